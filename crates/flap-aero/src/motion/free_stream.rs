@@ -1,16 +1,19 @@
 //! Loads of a section whose free stream varies in time: velocities in, loads per length out.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::{AeroError, SectionCoefficients};
+use rotor_base::Number;
 
 /// The stream a section sees, in any consistent units (rotor units: length `R`, time `1/Omega`).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FreeStream {
+pub struct FreeStream<T = f64> {
     /// Air density.
     pub density: f64,
     /// Semichord `b = c/2`, positive.
     pub semichord: f64,
     /// Chordwise velocity `U` from leading to trailing edge; negative in reverse flow.
-    pub speed: f64,
+    pub speed: T,
 }
 
 impl FreeStream {
@@ -32,13 +35,13 @@ impl FreeStream {
 
 /// Aerodynamic loads of a section per length of span, in the units of the [`FreeStream`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SectionLoads {
+pub struct SectionLoads<T = f64> {
     /// Lift, up +.
-    pub lift: f64,
+    pub lift: T,
     /// Moment about the quarter chord, nose-up +.
-    pub moment: f64,
+    pub moment: T,
     /// Hinge moment, positive in the sense of the flap angle.
-    pub hinge: f64,
+    pub hinge: T,
 }
 
 /// Loads per length of a section in a stream that may vary.
@@ -95,22 +98,22 @@ pub fn section_loads(
 /// y = direct w + sum output x,     y_rate = rate dw/dt
 /// ```
 /// For callers that keep the lags of their sections in a form of their own. `y` and `y_rate` are in
-/// the order of [`Load`](crate::Load), a velocity and a velocity per time.
-#[inline]
-pub fn loads_of_outputs(
-    stream: &FreeStream,
-    circulating: [f64; 3],
-    apparent: [f64; 3],
-) -> SectionLoads {
+/// the order of [`Load`](crate::Load), a velocity and a velocity per time; of one section, or of several side by side.
+#[inline(always)]
+pub fn loads_of_outputs<T: Number>(
+    stream: &FreeStream<T>,
+    circulating: [T; 3],
+    apparent: [T; 3],
+) -> SectionLoads<T> {
     let speed = stream.speed.abs();
-    let output = |o: usize| speed * circulating[o] + stream.semichord * apparent[o];
+    let output = |o: usize| speed * circulating[o] + apparent[o] * stream.semichord;
     let [lift, moment, hinge] = [output(0), output(1), output(2)];
     let chord = 2.0 * stream.semichord;
     let force = 0.5 * stream.density * chord;
     SectionLoads {
-        lift: force * lift,
-        moment: force * chord * moment,
-        hinge: force * chord * hinge,
+        lift: lift * force,
+        moment: moment * (force * chord),
+        hinge: hinge * (force * chord),
     }
 }
 

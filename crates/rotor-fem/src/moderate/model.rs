@@ -10,15 +10,16 @@ use crate::beam::assembly::{add_element, check_elements, section_motion};
 use crate::beam::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
 use crate::{FemError, RootSupport, SectionMotion};
 
-/// Pitch imposed at the root, at 0.75 R of a linearly twisted blade, with its rates in azimuth.
+/// Pitch imposed at the root, at 0.75 R of a linearly twisted blade, with its rates in azimuth: at one azimuth, or at
+/// several side by side.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct PitchMotion {
+pub struct PitchMotion<T = f64> {
     /// Angle, rad, nose up.
-    pub angle_rad: f64,
+    pub angle_rad: T,
     /// Rate, rad per rad of azimuth.
-    pub rate: f64,
+    pub rate: T,
     /// Acceleration, rad per rad^2 of azimuth.
-    pub acceleration: f64,
+    pub acceleration: T,
 }
 
 impl PitchMotion {

@@ -160,7 +160,7 @@ fn at_point(
     let (blade, couplings) = (system.blade, system.couplings);
     let coordinates = samples.at(p);
     let q = coordinates[0];
-    let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
+    let sections: Vec<SectionLoads> = revolution.at(p).collect();
     let motion = &system.motion(samples, p);
     let loading = Loading::new(system, (motion, &sections), p, loads, coordinates);
     let pitch = system.points[p].air.pitch.angle_rad;
@@ -266,7 +266,7 @@ mod tests {
             for p in [0, 17, 40] {
                 let q = samples.at(p)[0];
                 let mut span = SpanLoads::default();
-                let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
+                let sections: Vec<SectionLoads> = revolution.at(p).collect();
                 let at = (&system.motion(&samples, p), sections.as_slice());
                 let loading = Loading::new(&system, at, p, &mut span, samples.at(p));
                 let crate::ResponseBlade { properties, modes, grid, .. } = rotor.blade();

@@ -1,16 +1,20 @@
 //! The residual of a revolution, station by station: motion, flow, lags, loads and what they do on the modes, all
 //! azimuth points side by side, so that what a station needs stays close together.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::ResponseError;
 use crate::response::evaluated::{Revolution, StationWork, Work};
 use crate::response::system::ResponseSystem;
-use crate::sections::air::SectionLoads;
+use crate::sections::air::{SectionFlow, SectionLoads};
 use crate::sections::flight_air::{Lags, LoadLaw, POINTS_TOGETHER};
-use crate::structure::equations::{BladeState, Equations, SpanLoads, StationLoad};
+use crate::structure::equations::{BladeState, BlockLoad, Equations, SpanLoads, StationLoad};
 use crate::structure::motion::{Foreshortening, ModalRows, Motion};
 use nalgebra::DMatrix;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
-use rotor_fem::{ModalBlade, OrbitSamples, PeriodicSystem};
+use rotor_base::{LANES, Lanes};
+use rotor_fem::{ModalBlade, OrbitSamples, PeriodicSystem, PitchMotion};
 
 /// Stations that one thread takes together; their sum does not depend on the number of threads.
 const STATIONS_TOGETHER: usize = 16;
@@ -41,20 +45,21 @@ impl ResponseSystem<'_> {
         rows.fill(samples);
         foreshortening.fill(blade, self.couplings, rows);
         let stations = blade.grid.len();
-        let mut sections = vec![SectionLoads::default(); stations * points];
+        let (blocks, lanes) = (self.blocks.len(), rows.lanes());
+        let mut sections = vec![SectionLoads::default(); stations * blocks];
         together.resize_with(stations.div_ceil(STATIONS_TOGETHER), StationWork::default);
         let law = lags.map(|lags| LoadLaw { lags, ..self.load_law() });
         let summed = out.is_some() && blade.modal.is_none();
         let shared = (&*rows, &*foreshortening);
         let parts =
-            together.par_iter_mut().zip(sections.par_chunks_mut(STATIONS_TOGETHER * points));
+            together.par_iter_mut().zip(sections.par_chunks_mut(STATIONS_TOGETHER * blocks));
         let found: Vec<Result<(), ResponseError>> = parts
             .enumerate()
             .map(|(part, (own, sections))| {
                 let first = part * STATIONS_TOGETHER;
                 own.residual.clear();
-                own.residual.resize(if summed { self.dof() * points } else { 0 }, 0.0);
-                let mut sections = sections.chunks_exact_mut(points).enumerate();
+                own.residual.resize(if summed { self.dof() * lanes } else { 0 }, 0.0);
+                let mut sections = sections.chunks_exact_mut(blocks).enumerate();
                 sections
                     .try_for_each(|(k, loads)| self.at_station(first + k, law, shared, own, loads))
             })
@@ -63,7 +68,7 @@ impl ResponseSystem<'_> {
         let revolution = Revolution { first_station: self.air.first_station, points, sections };
         match (out, &blade.modal) {
             (Some(out), None) => {
-                gather(together, out);
+                gather(together, lanes, out);
                 out.gemm(1.0, &blade.root_spring, &samples.q, 1.0);
                 out.gemm(1.0, self.damping, &samples.qd, 1.0);
             }
@@ -82,7 +87,7 @@ impl ResponseSystem<'_> {
         law: Option<LoadLaw<'_>>,
         (rows, foreshortening): (&ModalRows, &Foreshortening),
         own: &mut StationWork,
-        loads: &mut [SectionLoads],
+        loads: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
         let StationWork { motion, flows, air, forces, residual } = own;
         let lifting = law.zip(i.checked_sub(self.air.first_station));
@@ -92,13 +97,12 @@ impl ResponseSystem<'_> {
         motion.fill_station(self.blade, i, rows, foreshortening);
         let motion = &*motion;
         if let Some((law, station)) = lifting {
-            flows.clear();
-            flows.extend((0..loads.len()).map(|p| self.flow(p, i, (motion, p))));
+            Arch::new().dispatch(Flows { system: self, i, motion, out: flows });
             if law.lags == Lags::OfFlapChange {
                 // the inputs of the flap are linear in its motion: along the direction they are their changes
                 for flow in flows.iter_mut() {
-                    flow.input[..2].fill(0.0);
-                    flow.input_rate[..2].fill(0.0);
+                    flow.input[..2].fill(Lanes::default());
+                    flow.input_rate[..2].fill(Lanes::default());
                 }
             }
             self.air.loads(station, flows, law, air, loads)?;
@@ -107,13 +111,7 @@ impl ResponseSystem<'_> {
             return Ok(());
         }
         let (blade, couplings, mass) = (self.blade, self.couplings, self.mass);
-        let at = |p: usize| {
-            let load = match law {
-                Some(_) => self.station_load(p, i, (motion, p), &loads[p]),
-                None => StationLoad::default(),
-            };
-            (self.points[p].air.pitch, load)
-        };
+        let at = Loaded { system: self, i, motion, loads: law.is_some().then_some(&*loads) };
         let equations = Equations { blade, couplings, mass };
         equations.add_station(i, motion, (rows, foreshortening), at, (forces, residual));
         Ok(())
@@ -135,7 +133,7 @@ impl ResponseSystem<'_> {
             loads.clear(self.blade.grid.len());
             if let Some(revolution) = revolution {
                 sections.clear();
-                sections.extend(revolution.at(p).copied());
+                sections.extend(revolution.at(p));
                 self.span_loads(p, motion, sections, loads);
             }
             let pitch = self.points[p].air.pitch;
@@ -146,12 +144,76 @@ impl ResponseSystem<'_> {
     }
 }
 
+/// Flows of a station in all blocks of points: a type of its own, for a closure would be called, not inlined, by the
+/// function that is compiled for the vector unit.
+struct Flows<'a> {
+    system: &'a ResponseSystem<'a>,
+    i: usize,
+    motion: &'a Motion,
+    out: &'a mut Vec<SectionFlow<Lanes>>,
+}
+
+impl WithSimd for Flows<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { system, i, motion, out } = self;
+        out.resize(system.blocks.len(), SectionFlow::default());
+        for (block, (flow, input)) in out.iter_mut().zip(&system.blocks).enumerate() {
+            *flow = system.flow(input, i, (motion, block));
+        }
+    }
+}
+
+/// Pitch and loads of a station: none without loads of the air.
+struct Loaded<'a> {
+    system: &'a ResponseSystem<'a>,
+    i: usize,
+    motion: &'a Motion,
+    loads: Option<&'a [SectionLoads<Lanes>]>,
+}
+
+impl BlockLoad for Loaded<'_> {
+    #[inline(always)]
+    fn at(&self, block: usize) -> (PitchMotion<Lanes>, StationLoad<Lanes>) {
+        let Self { system, i, motion, loads } = *self;
+        let input = &system.blocks[block];
+        let mut load = StationLoad::default();
+        if let Some(loads) = loads {
+            load = system.station_load(input, i, (motion, block), &loads[block]);
+            if system.blade.flaps_beside_blade() {
+                self.add_heavy_flaps(block, &mut load);
+            }
+        }
+        (input.air.pitch, load)
+    }
+}
+
+impl Loaded<'_> {
+    /// Adds what flaps that weigh beside the blade do, lane by lane.
+    fn add_heavy_flaps(&self, block: usize, load: &mut StationLoad<Lanes>) {
+        let points = self.system.points.len();
+        for (k, point) in (block * LANES..points).take(LANES).enumerate() {
+            if let Some(flap) = self.system.heavy_flap_load(point, self.i, (self.motion, point)) {
+                load.axial.0[k] += flap.axial;
+                load.fy.0[k] += flap.fy;
+                load.fz.0[k] += flap.fz;
+                load.moment.0[k] += flap.moment;
+                for (slope, more) in load.slope.iter_mut().zip(flap.slope) {
+                    slope.0[k] += more;
+                }
+            }
+        }
+    }
+}
+
 /// The residual of all stations, their parts added in order.
-fn gather(together: &[StationWork], out: &mut DMatrix<f64>) {
-    let (dof, points) = out.shape();
+fn gather(together: &[StationWork], lanes: usize, out: &mut DMatrix<f64>) {
+    let dof = out.nrows();
     for (p, column) in out.as_mut_slice().chunks_exact_mut(dof).enumerate() {
         for (j, value) in column.iter_mut().enumerate() {
-            *value = together.iter().map(|part| part.residual[j * points + p]).sum();
+            *value = together.iter().map(|part| part.residual[j * lanes + p]).sum();
         }
     }
 }

@@ -47,7 +47,7 @@ pub(crate) struct Lifting {
 }
 
 impl Lifting {
-    pub(crate) fn of(loads: &SectionLoads) -> Self {
+    pub(crate) fn of(loads: SectionLoads) -> Self {
         Self { lift: loads.fz, circulation: loads.circulation }
     }
 }
@@ -90,7 +90,7 @@ impl PointLoads {
         loads: &mut SpanLoads,
     ) -> Self {
         let (blade, couplings) = (rotor.blade(), rotor.model().couplings);
-        let sections: Vec<SectionLoads> = revolution.at(p).copied().collect();
+        let sections: Vec<SectionLoads> = revolution.at(p).collect();
         let coordinates = samples.at(p);
         let motion = &system.motion(samples, p);
         let loading = Loading::new(system, (motion, &sections), p, loads, coordinates);

@@ -1,7 +1,7 @@
 //! A rotor ready to be solved, and the condition it is solved in.
 
 use crate::model::flap_mass::with_flap_masses;
-use crate::response::system::{PointInput, ResponseSystem};
+use crate::response::system::{PointInput, ResponseSystem, side_by_side};
 use crate::sections::flight_air::FlightAir;
 use crate::structure::blade::ResponseBlade;
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
@@ -72,6 +72,7 @@ impl Rotor {
             blade: &self.blade,
             couplings: self.model.couplings,
             air,
+            blocks: side_by_side(&points),
             points,
             damping: &self.damping,
             mass: &self.mass,

@@ -1,10 +1,12 @@
 //! The aeroelastic blade as a periodic system for the time elements.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::ResponseError;
 use crate::model::flap_inertia::FlapSection;
 use crate::response::evaluated::{Revolution, Work};
 use crate::sections::air::{
-    AirPoint, FlapAngle, SectionAxes, SectionFlow, SectionLoads, section_flow,
+    AirPoint, FlapAngle, SectionAxes, SectionFlow, SectionLoads, gathered, section_flow,
 };
 use crate::sections::flight_air::{FlightAir, Lags, LoadLaw};
 use crate::structure::blade::ResponseBlade;
@@ -13,22 +15,54 @@ use crate::structure::motion::Motion;
 use crate::{Couplings, FlapMass};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
-use rotor_fem::{LocalTangent, OrbitMemory, OrbitSamples, PeriodicSystem};
+use rotor_base::{LANES, Lanes, Number};
+use rotor_fem::{LocalTangent, OrbitMemory, OrbitSamples, PeriodicSystem, PitchMotion};
 
 /// Step of the one-sided differences of the Newton matrix. Only the speed of convergence depends on
 /// it, never the solution.
 const TANGENT_STEP: f64 = 1e-6;
 
-/// What the air and the pilot do at one azimuth point.
+/// What the air and the pilot do at one azimuth point, or at several side by side.
 #[derive(Debug, Clone)]
-pub(crate) struct PointInput {
-    pub(crate) air: AirPoint,
+pub(crate) struct PointInput<T = f64> {
+    pub(crate) air: AirPoint<T>,
     /// Total inflow at the lifting stations, tip speed, down positive.
-    pub(crate) inflow: Vec<f64>,
+    pub(crate) inflow: Vec<T>,
     /// Angle, rate and acceleration of each flap, rad.
-    pub(crate) flap: Vec<FlapAngle>,
+    pub(crate) flap: Vec<FlapAngle<T>>,
     /// Acceleration of gravity in the axes of the coned blade, `Omega^2 R`.
-    pub(crate) gravity: [f64; 3],
+    pub(crate) gravity: [T; 3],
+}
+
+impl PointInput<Lanes> {
+    /// Points side by side; the last one fills the rest.
+    fn gather(points: &[PointInput]) -> Self {
+        let of = |value: fn(&PointInput) -> f64| gathered(points, value);
+        let first = &points[0];
+        Self {
+            air: AirPoint {
+                sin: of(|p| p.air.sin),
+                cos: of(|p| p.air.cos),
+                advance_ratio: first.air.advance_ratio,
+                pitch: PitchMotion {
+                    angle_rad: of(|p| p.air.pitch.angle_rad),
+                    rate: of(|p| p.air.pitch.rate),
+                    acceleration: of(|p| p.air.pitch.acceleration),
+                },
+                reverse_flow: first.air.reverse_flow,
+            },
+            inflow: (0..first.inflow.len()).map(|s| gathered(points, |p| p.inflow[s])).collect(),
+            flap: (0..first.flap.len())
+                .map(|k| std::array::from_fn(|c| gathered(points, |p| p.flap[k][c])))
+                .collect(),
+            gravity: std::array::from_fn(|k| gathered(points, |p| p.gravity[k])),
+        }
+    }
+}
+
+/// Inputs in blocks of lanes.
+pub(crate) fn side_by_side(points: &[PointInput]) -> Vec<PointInput<Lanes>> {
+    points.chunks(LANES).map(PointInput::gather).collect()
 }
 
 /// One blade in one flight condition.
@@ -38,23 +72,35 @@ pub(crate) struct ResponseSystem<'a> {
     pub(crate) couplings: Couplings,
     pub(crate) air: &'a FlightAir,
     pub(crate) points: Vec<PointInput>,
+    /// The same side by side.
+    pub(crate) blocks: Vec<PointInput<Lanes>>,
     /// Damping of the modes and of the lag damper.
     pub(crate) damping: &'a DMatrix<f64>,
     pub(crate) mass: &'a DMatrix<f64>,
 }
 
 impl ResponseSystem<'_> {
+    /// The same blade with other inputs.
+    pub(crate) fn with_points(&self, points: Vec<PointInput>) -> Self {
+        Self { blocks: side_by_side(&points), points, ..*self }
+    }
+
     /// Flow at every lifting station for the motion held in `motion`.
     pub(crate) fn flows(&self, point: usize, motion: &Motion) -> Vec<SectionFlow> {
         let first = self.air.first_station;
-        (first..first + self.air.stations()).map(|i| self.flow(point, i, (motion, i))).collect()
+        let input = &self.points[point];
+        (first..first + self.air.stations()).map(|i| self.flow(input, i, (motion, i))).collect()
     }
 
-    /// Flow at a lifting station, whose motion stands in a lane.
-    #[inline]
-    pub(crate) fn flow(&self, point: usize, i: usize, motion: (&Motion, usize)) -> SectionFlow {
-        let input = &self.points[point];
-        let delta = self.blade.flap_index[i].map_or([0.0; 3], |flap| input.flap[flap]);
+    /// Flow at a lifting station, whose motion stands in a lane or a block of lanes.
+    #[inline(always)]
+    pub(crate) fn flow<T: Number>(
+        &self,
+        input: &PointInput<T>,
+        i: usize,
+        motion: (&Motion, usize),
+    ) -> SectionFlow<T> {
+        let delta = self.blade.flap_index[i].map_or([T::default(); 3], |flap| input.flap[flap]);
         let lambda = input.inflow[i - self.air.first_station];
         section_flow(self.blade, motion, &input.air, (i, lambda), delta)
     }
@@ -116,58 +162,67 @@ impl ResponseSystem<'_> {
         let still = SectionLoads::default();
         for i in 0..self.blade.grid.len() {
             let section = i.checked_sub(self.air.first_station).and_then(|s| sections.get(s));
-            out.set(i, &self.station_load(point, i, (motion, i), section.unwrap_or(&still)));
+            let at = (motion, i);
+            let mut load = self.station_load(&self.points[point], i, at, section.unwrap_or(&still));
+            if let Some(flap) = self.heavy_flap_load(point, i, at) {
+                load.add(&flap);
+            }
+            out.set(i, &load);
         }
     }
 
-    /// The same at one station, whose motion stands in a lane.
+    /// The same at one station, whose motion stands in a lane or a block of lanes, without
+    /// [`heavy_flap_load`](Self::heavy_flap_load).
     ///
     /// ```text
     /// F_z += m_f X_f delta''     M += -(m_f (d + X_f) X_f + I_cg) delta'' - m_f (d + X_f) X_f delta
     /// ```
-    /// Of a flap that is part of the blade only what its angle adds, in this first-order form; of one
-    /// that weighs beside it all loads of its distance from the elastic axis.
-    #[inline]
-    pub(crate) fn station_load(
+    /// Of a flap that is part of the blade only what its angle adds, in this first-order form.
+    #[inline(always)]
+    pub(crate) fn station_load<T: Number>(
         &self,
-        point: usize,
+        input: &PointInput<T>,
         i: usize,
         (motion, lane): (&Motion, usize),
-        section: &SectionLoads,
-    ) -> StationLoad {
-        let (blade, input) = (self.blade, &self.points[point]);
+        section: &SectionLoads<T>,
+    ) -> StationLoad<T> {
+        let blade = self.blade;
         let [fy, fz] = SectionAxes::of(blade, motion, lane).force(section);
         let (moment, gravity) = (section.moment, input.gravity);
         let mut load = StationLoad { fy, fz, moment, gravity, ..StationLoad::default() };
         let centre = blade.mass_centre[i];
         if centre != 0.0 {
             let twist = input.air.pitch.angle_rad + blade.twist[i];
-            let (sin, cos) = (twist + motion.phi.value[lane]).sin_cos();
+            let (sin, cos) = (twist + motion.phi.value::<T>(lane)).sin_cos();
             let [_, y, z] = gravity;
-            load.moment += blade.section_mass[i] * centre * (cos * z - sin * y);
+            load.moment += (cos * z - sin * y) * (blade.section_mass[i] * centre);
         }
-        let (Some(k), Some(inertia)) = (blade.flap_index[i], blade.flap_inertia[i]) else {
-            return load;
-        };
-        match inertia.mass {
-            FlapMass::PartOfBlade => {
-                let [delta, _, acceleration] = input.flap[k];
-                load.fz += inertia.first_moment * acceleration;
-                load.moment -=
-                    (inertia.arm_moment + inertia.own) * acceleration + inertia.arm_moment * delta;
-            }
-            FlapMass::AddedToBlade => {
-                let section = self.flap_section(point, (motion, lane), i, k);
-                let loads = inertia.body.loads_off_axis(&section);
-                load.axial += loads.force[0];
-                load.fy += loads.force[1];
-                load.fz += loads.force[2];
-                load.moment += loads.twist;
-                load.slope[0] += loads.slope[0];
-                load.slope[1] += loads.slope[1];
-            }
+        if let (Some(k), Some(inertia)) = (blade.flap_index[i], blade.flap_inertia[i])
+            && inertia.mass == FlapMass::PartOfBlade
+        {
+            let [delta, _, acceleration] = input.flap[k];
+            load.fz += acceleration * inertia.first_moment;
+            load.moment -=
+                acceleration * (inertia.arm_moment + inertia.own) + delta * inertia.arm_moment;
         }
         load
+    }
+
+    /// Of a flap that weighs beside the blade, all loads of its distance from the elastic axis at a station, whose motion
+    /// stands in a lane; none where there is no such flap.
+    pub(crate) fn heavy_flap_load(
+        &self,
+        point: usize,
+        i: usize,
+        motion: (&Motion, usize),
+    ) -> Option<StationLoad> {
+        let (k, inertia) = self.blade.flap_index[i].zip(self.blade.flap_inertia[i])?;
+        (inertia.mass == FlapMass::AddedToBlade).then(|| {
+            let loads = inertia.body.loads_off_axis(&self.flap_section(point, motion, i, k));
+            let [axial, fy, fz] = loads.force;
+            let (moment, slope) = (loads.twist, loads.slope);
+            StationLoad { axial, fy, fz, moment, slope, gravity: [0.0; 3] }
+        })
     }
 
     /// Linearisation of the residual with settled lag states at every point, by differences: there it depends on
@@ -281,8 +336,7 @@ impl ResponseSystem<'_> {
             gravity: [0.0; 3],
             ..point.clone()
         };
-        let along =
-            ResponseSystem { points: self.points.iter().zip(flaps).map(along).collect(), ..*self };
+        let along = self.with_points(self.points.iter().zip(flaps).map(along).collect());
         let mut slope = DMatrix::zeros(self.dof(), self.points.len());
         let lags = Some(Lags::OfFlapChange);
         along.evaluate(samples, lags, &mut Work::default(), Some(&mut slope))?;

@@ -23,30 +23,65 @@
 //! Source: Johnson, Helicopter Theory (1980), chapter 5, for the velocities; section loads by
 //! `flap-aero`.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::ReverseFlow;
 use crate::model::air_scales::AirScales;
 use crate::structure::blade::ResponseBlade;
 use crate::structure::motion::Motion;
 use flap_aero::{FreeStream, loads_of_outputs};
+use rotor_base::{LANES, Lanes, Number};
 use rotor_fem::PitchMotion;
 
 /// Angle of one trailing-edge flap with its azimuth derivatives (rad).
-pub(crate) type FlapAngle = [f64; 3];
+pub(crate) type FlapAngle<T = f64> = [T; 3];
 
-/// Air seen by one section at one azimuth; speeds in tip speed.
+/// Air seen by one section at one azimuth, or at several side by side; speeds in tip speed.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct SectionFlow {
+pub(crate) struct SectionFlow<T = f64> {
     /// Speed across the line of the sections, chordwise.
-    pub(crate) u_t: f64,
-    pub(crate) u_p: f64,
+    pub(crate) u_t: T,
+    pub(crate) u_p: T,
     /// Sense of the circulation: 1 in flow from the leading edge, -1 in reverse flow.
-    pub(crate) sense: f64,
+    pub(crate) sense: T,
     /// Pitch of the section, nose up, rad.
-    pub(crate) pitch: f64,
+    pub(crate) pitch: T,
     /// `[U alpha, c om, U delta, c delta']`.
-    pub(crate) input: [f64; 4],
+    pub(crate) input: [T; 4],
     /// Azimuth derivative of the inputs.
-    pub(crate) input_rate: [f64; 4],
+    pub(crate) input_rate: [T; 4],
+}
+
+impl SectionFlow<Lanes> {
+    /// The flow in one lane.
+    pub(crate) fn lane(&self, k: usize) -> SectionFlow {
+        SectionFlow {
+            u_t: self.u_t.0[k],
+            u_p: self.u_p.0[k],
+            sense: self.sense.0[k],
+            pitch: self.pitch.0[k],
+            input: self.input.map(|row| row.0[k]),
+            input_rate: self.input_rate.map(|row| row.0[k]),
+        }
+    }
+
+    /// Flows side by side; the last one fills the rest.
+    pub(crate) fn gather(flows: &[SectionFlow]) -> Self {
+        let of = |value: fn(&SectionFlow) -> f64| gathered(flows, value);
+        Self {
+            u_t: of(|flow| flow.u_t),
+            u_p: of(|flow| flow.u_p),
+            sense: of(|flow| flow.sense),
+            pitch: of(|flow| flow.pitch),
+            input: std::array::from_fn(|i| gathered(flows, |flow| flow.input[i])),
+            input_rate: std::array::from_fn(|i| gathered(flows, |flow| flow.input_rate[i])),
+        }
+    }
+}
+
+/// A value of every element, side by side; the last one fills the rest.
+pub(crate) fn gathered<A>(of: &[A], value: impl Fn(&A) -> f64) -> Lanes {
+    Lanes::from_fn(|k| of.get(k).or(of.last()).map_or(0.0, &value))
 }
 
 impl SectionFlow {
@@ -64,28 +99,28 @@ impl SectionFlow {
     }
 }
 
-/// Azimuth, free stream and pitch at one azimuth point.
+/// Azimuth, free stream and pitch at one azimuth point, or at several side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct AirPoint {
-    pub(crate) sin: f64,
-    pub(crate) cos: f64,
+pub(crate) struct AirPoint<T = f64> {
+    pub(crate) sin: T,
+    pub(crate) cos: T,
     pub(crate) advance_ratio: f64,
-    pub(crate) pitch: PitchMotion,
+    pub(crate) pitch: PitchMotion<T>,
     pub(crate) reverse_flow: ReverseFlow,
 }
 
 /// A vector in coned blade axes with its azimuth derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turned {
-    pub(crate) value: [f64; 3],
-    pub(crate) rate: [f64; 3],
+pub(crate) struct Turned<T> {
+    pub(crate) value: [T; 3],
+    pub(crate) rate: [T; 3],
 }
 
-impl Turned {
+impl<T: Number> Turned<T> {
     /// Component along another vector and its derivative.
-    #[inline]
-    fn along(&self, other: &Self) -> [f64; 2] {
-        let product = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    #[inline(always)]
+    fn along(&self, other: &Self) -> [T; 2] {
+        let product = |a: &[T; 3], b: &[T; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let rate = product(&self.rate, &other.value) + product(&self.value, &other.rate);
         [product(&self.value, &other.value), rate]
     }
@@ -99,139 +134,170 @@ impl Turned {
 /// ```
 /// The second are those of a section turned by lag and then by flap, `t x chord` with `t = (1, v_x, w_x)`, to second order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SectionAxes {
-    pub(crate) chord: Turned,
-    pub(crate) normal: Turned,
+pub(crate) struct SectionAxes<T> {
+    pub(crate) chord: Turned<T>,
+    pub(crate) normal: Turned<T>,
 }
 
-impl SectionAxes {
-    /// In a lane of a motion.
-    #[inline]
+impl<T: Number> SectionAxes<T> {
+    /// In a lane, or a block of lanes, of a motion.
+    #[inline(always)]
     pub(crate) fn of(blade: &ResponseBlade, motion: &Motion, lane: usize) -> Self {
-        let (v_x, v_rate) = (motion.v.slope[lane], motion.v.slope_rate[lane]);
-        let (w_x, w_rate) = (motion.w.slope[lane], motion.w.slope_rate[lane]);
-        let second = if blade.modal.is_some() { 1.0 } else { 0.0 };
+        let (v_x, v_rate): (T, T) = (motion.v.slope(lane), motion.v.slope_rate(lane));
+        let (w_x, w_rate): (T, T) = (motion.w.slope(lane), motion.w.slope_rate(lane));
+        let second = if blade.modal.is_some() { -1.0 } else { 0.0 };
+        let zero = T::default();
         Self {
             chord: Turned {
-                value: [-v_x, 1.0 - second * 0.5 * v_x * v_x, 0.0],
-                rate: [-v_rate, -second * v_x * v_rate, 0.0],
+                value: [-v_x, v_x * v_x * (0.5 * second) + 1.0, zero],
+                rate: [-v_rate, v_x * v_rate * second, zero],
             },
             normal: Turned {
-                value: [-w_x, -second * v_x * w_x, 1.0 - second * 0.5 * w_x * w_x],
-                rate: [-w_rate, -second * (v_rate * w_x + v_x * w_rate), -second * w_x * w_rate],
+                value: [-w_x, v_x * w_x * second, w_x * w_x * (0.5 * second) + 1.0],
+                rate: [-w_rate, (v_rate * w_x + v_x * w_rate) * second, w_x * w_rate * second],
             },
         }
     }
 
     /// Forces toward the leading edge and up, in coned blade axes, of a load along the section's axes. The one along
     /// the blade is [`SpanLoads::fx`](crate::structure::equations::SpanLoads::fx).
-    #[inline]
-    pub(crate) fn force(&self, loads: &SectionLoads) -> [f64; 2] {
+    #[inline(always)]
+    pub(crate) fn force(&self, loads: &SectionLoads<T>) -> [T; 2] {
         let along = |k: usize| loads.fy * self.chord.value[k] + loads.fz * self.normal.value[k];
         [along(1), along(2)]
     }
 }
 
 /// Velocity of a section through the air, coned blade axes; the inflow is held in the rate.
-#[inline]
-fn through_air(
+#[inline(always)]
+fn through_air<T: Number>(
     blade: &ResponseBlade,
     (motion, lane): (&Motion, usize),
-    point: &AirPoint,
-    (i, lambda): (usize, f64),
-) -> Turned {
+    point: &AirPoint<T>,
+    (i, lambda): (usize, T),
+) -> Turned<T> {
     let (w, v) = (&motion.w, &motion.v);
-    let (mu_sin, mu_cos) = (point.advance_ratio * point.sin, point.advance_ratio * point.cos);
+    let (mu_sin, mu_cos) = (point.sin * point.advance_ratio, point.cos * point.advance_ratio);
     let [s, c] = blade.cone;
     let y_t = blade.offsets.torque;
-    let [u, u_rate, u_acceleration] = motion.shortening(lane);
-    let (value, rate) = (v.value[lane], v.rate[lane]);
+    let [u, u_rate, u_acceleration]: [T; 3] = motion.shortening(lane);
+    let (value, rate): (T, T) = (v.value(lane), v.rate(lane));
     // what the section has of the speed along the blade by its lag
-    let [lag, lag_rate] = if blade.modal.is_some() { [value, rate] } else { [0.0; 2] };
+    let [lag, lag_rate] = if blade.modal.is_some() { [value, rate] } else { [T::default(); 2] };
     let x = blade.grid.x()[i];
+    let w_rate: T = w.rate(lane);
     Turned {
         value: [
-            u_rate - c * (y_t + lag) - c * mu_cos + s * lambda,
-            rate + c * (x + u) - s * w.value[lane] + mu_sin,
-            w.rate[lane] + s * (y_t + value) + c * lambda + s * mu_cos,
+            u_rate - (lag + y_t) * c - mu_cos * c + lambda * s,
+            rate + (u + x) * c - w.value::<T>(lane) * s + mu_sin,
+            w_rate + (value + y_t) * s + lambda * c + mu_cos * s,
         ],
         rate: [
-            u_acceleration - c * lag_rate + c * mu_sin,
-            v.acceleration[lane] + c * u_rate - s * w.rate[lane] + mu_cos,
-            w.acceleration[lane] + s * rate - s * mu_sin,
+            u_acceleration - lag_rate * c + mu_sin * c,
+            v.acceleration::<T>(lane) + u_rate * c - w_rate * s + mu_cos,
+            w.acceleration::<T>(lane) + rate * s - mu_sin * s,
         ],
     }
 }
 
-/// Flow at station `i`, whose motion stands in a lane, for a total inflow `lambda` (down positive, tip speed).
-#[inline]
-pub(crate) fn section_flow(
+/// Flow at station `i`, whose motion stands in a lane or a block of lanes, for a total inflow `lambda` (down positive, tip
+/// speed).
+#[inline(always)]
+pub(crate) fn section_flow<T: Number>(
     blade: &ResponseBlade,
     (motion, lane): (&Motion, usize),
-    point: &AirPoint,
-    (i, lambda): (usize, f64),
-    delta: FlapAngle,
-) -> SectionFlow {
+    point: &AirPoint<T>,
+    (i, lambda): (usize, T),
+    delta: FlapAngle<T>,
+) -> SectionFlow<T> {
     let (w, phi) = (&motion.w, &motion.phi);
-    let theta = point.pitch.angle_rad + blade.twist[i] + phi.value[lane];
-    let theta_rate = point.pitch.rate + phi.rate[lane];
+    let theta = point.pitch.angle_rad + blade.twist[i] + phi.value::<T>(lane);
+    let theta_rate = point.pitch.rate + phi.rate::<T>(lane);
     let AirScales { chord, centre, sweep, .. } = blade.air[i];
-    let om = theta_rate + w.slope[lane] + blade.precone;
-    let om_rate = point.pitch.acceleration + phi.acceleration[lane] + w.slope_rate[lane];
+    let om = theta_rate + w.slope::<T>(lane) + blade.precone;
+    let om_rate = point.pitch.acceleration + phi.acceleration::<T>(lane) + w.slope_rate::<T>(lane);
     let through = through_air(blade, (motion, lane), point, (i, lambda));
     let axes = SectionAxes::of(blade, motion, lane);
     let [u_t, u_t_rate] = through.along(&axes.chord);
     let [normal, normal_rate] = through.along(&axes.normal);
-    let u_p = normal + centre * om;
-    let u_p_rate = normal_rate + centre * om_rate;
+    let u_p = normal + om * centre;
+    let u_p_rate = normal_rate + om_rate * centre;
     let along_span = || {
         let [x, y, z] = through.value;
-        x + motion.v.slope[lane] * y + w.slope[lane] * z
+        x + motion.v.slope::<T>(lane) * y + w.slope::<T>(lane) * z
     };
-    let speed = if sweep == 0.0 { u_t } else { u_t + sweep * along_span() };
-    let rigid = blade.grid.x()[i] + point.advance_ratio * (point.sin - sweep * point.cos);
+    let speed = if sweep == 0.0 { u_t } else { u_t + along_span() * sweep };
+    let rigid = (point.sin - point.cos * sweep) * point.advance_ratio + blade.grid.x()[i];
     SectionFlow {
         u_t: speed,
         u_p,
         sense: sense(point.reverse_flow, speed, u_p, rigid),
         pitch: theta,
-        input: [u_t * theta - u_p, chord * om, u_t * delta[0], chord * delta[1]],
+        input: [u_t * theta - u_p, om * chord, u_t * delta[0], delta[1] * chord],
         input_rate: [
             u_t_rate * theta + u_t * theta_rate - u_p_rate,
-            chord * om_rate,
+            om_rate * chord,
             u_t_rate * delta[0] + u_t * delta[1],
-            chord * delta[2],
+            delta[2] * chord,
         ],
     }
 }
 
 /// Sense of the circulation in a flow `(U_T, U_P)`, the rigid blade having the tangential speed `rigid`.
-#[inline]
-pub(crate) fn sense(reverse_flow: ReverseFlow, u_t: f64, u_p: f64, rigid: f64) -> f64 {
+#[inline(always)]
+pub(crate) fn sense<T: Number>(reverse_flow: ReverseFlow, u_t: T, u_p: T, rigid: T) -> T {
     match reverse_flow {
-        ReverseFlow::Gradual => u_t / (u_t * u_t + u_p * u_p).sqrt().max(f64::MIN_POSITIVE),
-        ReverseFlow::Abrupt => rigid.signum(),
+        ReverseFlow::Gradual => u_t / (u_t * u_t + u_p * u_p).sqrt().at_least(f64::MIN_POSITIVE),
+        ReverseFlow::Abrupt => rigid.map(f64::signum),
     }
 }
 
-/// Loads of one section per length, rotor units.
+/// Loads of one section per length at one azimuth, or at several side by side; rotor units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct SectionLoads {
-    pub(crate) fz: f64,
-    pub(crate) fy: f64,
-    pub(crate) moment: f64,
-    pub(crate) hinge: f64,
+pub(crate) struct SectionLoads<T = f64> {
+    pub(crate) fz: T,
+    pub(crate) fy: T,
+    pub(crate) moment: T,
+    pub(crate) hinge: T,
     /// Bound circulation, tip speed times R, positive with lift up in flow from the leading edge.
-    pub(crate) circulation: f64,
+    pub(crate) circulation: T,
+}
+
+impl<T: Number> SectionLoads<T> {
+    /// The same about an axis that lies `centre` behind the point of attack, the section pitched by `pitch`.
+    #[inline(always)]
+    pub(crate) fn about(self, centre: f64, pitch: T) -> Self {
+        let (sin, cos) = pitch.sin_cos();
+        Self { moment: self.moment + (self.fz * cos - self.fy * sin) * centre, ..self }
+    }
+}
+
+impl SectionLoads<Lanes> {
+    /// The loads in one lane.
+    #[inline]
+    pub(crate) fn lane(&self, k: usize) -> SectionLoads {
+        SectionLoads {
+            fz: self.fz.0[k],
+            fy: self.fy.0[k],
+            moment: self.moment.0[k],
+            hinge: self.hinge.0[k],
+            circulation: self.circulation.0[k],
+        }
+    }
+
+    /// Loads side by side; the last one fills the rest.
+    pub(crate) fn gather(loads: &[SectionLoads]) -> Self {
+        Self {
+            fz: gathered(loads, |of| of.fz),
+            fy: gathered(loads, |of| of.fy),
+            moment: gathered(loads, |of| of.moment),
+            hinge: gathered(loads, |of| of.hinge),
+            circulation: gathered(loads, |of| of.circulation),
+        }
+    }
 }
 
 impl SectionLoads {
-    /// The same about an axis that lies `centre` behind the point of attack, the section pitched by `pitch`.
-    pub(crate) fn about(self, centre: f64, pitch: f64) -> Self {
-        let (sin, cos) = pitch.sin_cos();
-        Self { moment: self.moment + centre * (self.fz * cos - self.fy * sin), ..self }
-    }
-
     /// Adds a share of other loads.
     pub(crate) fn add(&mut self, share: f64, other: &Self) {
         self.fz += share * other.fz;
@@ -244,68 +310,112 @@ impl SectionLoads {
 
 /// What the past of a section adds to its loads.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct SectionPast {
+pub(crate) struct SectionPast<T = f64> {
     /// Lag part of lift, moment and hinge moment, velocities.
-    pub(crate) lag: [f64; 3],
+    pub(crate) lag: [T; 3],
     /// Share of the rigid section, without its flap, in the lag part of the lift; only of sections
     /// beyond linear theory.
-    pub(crate) rigid_lift: f64,
+    pub(crate) rigid_lift: T,
     /// What stall adds to the coefficients of normal force, chord force and moment.
-    pub(crate) stall: [f64; 3],
+    pub(crate) stall: [T; 3],
+}
+
+impl SectionPast<Lanes> {
+    /// The past in one lane.
+    pub(crate) fn lane(&self, k: usize) -> SectionPast {
+        SectionPast {
+            lag: self.lag.map(|row| row.0[k]),
+            rigid_lift: self.rigid_lift.0[k],
+            stall: self.stall.map(|row| row.0[k]),
+        }
+    }
 }
 
 /// Outputs per input, `[output][input]`.
-pub(crate) type Gains = [[f64; 4]; 3];
+pub(crate) type Gains<T = f64> = [[T; 4]; 3];
 
 /// Section coefficients without their lags: outputs per input, and per rate of an input in
 /// semichords travelled, `[output][input]`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PromptCoefficients<'a> {
-    pub(crate) direct: &'a Gains,
+pub(crate) struct PromptCoefficients<T = f64> {
+    pub(crate) direct: Gains<T>,
     /// None if there are none.
-    pub(crate) rate: Option<&'a Gains>,
+    pub(crate) rate: Option<Gains<T>>,
 }
 
-impl PromptCoefficients<'_> {
+impl<T: Number> PromptCoefficients<T> {
     /// Output `o` of apparent mass.
-    #[inline]
-    pub(crate) fn apparent(&self, o: usize, flow: &SectionFlow) -> f64 {
-        self.rate.map_or(0.0, |rate| dot(&rate[o], &flow.input_rate))
+    #[inline(always)]
+    pub(crate) fn apparent(&self, o: usize, flow: &SectionFlow<T>) -> T {
+        self.rate.map_or(T::default(), |rate| dot(&rate[o], &flow.input_rate))
     }
 }
 
+impl PromptCoefficients<Lanes> {
+    /// The coefficients in one lane.
+    pub(crate) fn lane(&self, k: usize) -> PromptCoefficients {
+        PromptCoefficients {
+            direct: lane_of(&self.direct, k),
+            rate: self.rate.map(|rate| lane_of(&rate, k)),
+        }
+    }
+}
+
+/// Gains in one lane.
+pub(crate) fn lane_of(gains: &Gains<Lanes>, k: usize) -> Gains {
+    gains.map(|row| row.map(|gain| gain.0[k]))
+}
+
+/// Gains of points side by side; the last one fills the rest.
+pub(crate) fn in_lanes(points: &[Gains]) -> Vec<Gains<Lanes>> {
+    let block = |block: &[Gains]| -> Gains<Lanes> {
+        std::array::from_fn(|o| std::array::from_fn(|i| gathered(block, |gains| gains[o][i])))
+    };
+    points.chunks(LANES).map(block).collect()
+}
+
 /// Scalar product over the four section inputs.
-#[inline]
-pub(crate) fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+#[inline(always)]
+pub(crate) fn dot<T: Number>(a: &[T; 4], b: &[T; 4]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
 /// Section loads from the flow, the coefficients and the lag part of the three outputs
 /// (lift, moment, hinge moment, as velocities).
-#[inline]
-pub(crate) fn section_loads(
+#[inline(always)]
+pub(crate) fn section_loads<T: Number>(
     scales: AirScales,
-    flow: &SectionFlow,
-    coefficients: PromptCoefficients<'_>,
-    lag: [f64; 3],
-) -> SectionLoads {
+    flow: &SectionFlow<T>,
+    coefficients: &PromptCoefficients<T>,
+    lag: [T; 3],
+) -> SectionLoads<T> {
     let stream = FreeStream {
         density: scales.density_chord / scales.chord,
         semichord: 0.5 * scales.chord,
         speed: flow.u_t,
     };
-    let circulating = |k: usize| dot(&coefficients.direct[k], &flow.input) + lag[k];
-    let circulating = [circulating(0), circulating(1), circulating(2)];
-    let apparent = |k: usize| coefficients.apparent(k, flow);
-    let apparent = [apparent(0), apparent(1), apparent(2)];
+    let [lift, moment, hinge] = coefficients.direct;
+    let circulating = [
+        dot(&lift, &flow.input) + lag[0],
+        dot(&moment, &flow.input) + lag[1],
+        dot(&hinge, &flow.input) + lag[2],
+    ];
+    let apparent = match coefficients.rate {
+        Some([lift, moment, hinge]) => [
+            dot(&lift, &flow.input_rate),
+            dot(&moment, &flow.input_rate),
+            dot(&hinge, &flow.input_rate),
+        ],
+        None => [T::default(); 3],
+    };
     let loads = loads_of_outputs(&stream, circulating, apparent);
     let half = 0.5 * scales.density_chord;
     SectionLoads {
         fz: loads.lift,
-        fy: -half
-            * (flow.sense * circulating[0] * flow.u_p + scales.drag * flow.u_t.abs() * flow.u_t),
+        fy: -(flow.sense * circulating[0] * flow.u_p + flow.u_t.abs() * flow.u_t * scales.drag)
+            * half,
         moment: loads.moment,
         hinge: loads.hinge,
-        circulation: 0.5 * scales.chord * flow.sense * circulating[0],
+        circulation: flow.sense * circulating[0] * (0.5 * scales.chord),
     }
 }

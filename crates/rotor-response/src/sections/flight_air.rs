@@ -4,6 +4,8 @@
 //! elastic part of the speed changes them in second order only. That makes the lag states a linear
 //! operator on the section inputs, solved once per flight condition.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 mod memory;
 
 /// Azimuth points, and stations, that one thread takes together at least: less would cost more to hand out.
@@ -14,7 +16,8 @@ use crate::model::air_scales::{AirScales, sweep_cosine};
 
 use crate::model::rotor_model::MACH_LIMIT;
 use crate::sections::air::{
-    Gains, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, section_loads, sense,
+    Gains, PromptCoefficients, SectionFlow, SectionLoads, SectionPast, dot, gathered, in_lanes,
+    section_loads, sense,
 };
 use crate::sections::fine_azimuth::{FineAzimuth, RigidSpeed};
 use crate::sections::lag::Collocation;
@@ -25,19 +28,20 @@ use crate::sections::station_lags::{LagScratch, StationLags};
 use crate::structure::blade::ResponseBlade;
 use crate::{ResponseError, ReverseFlow, RotorModel};
 use flap_aero::{FlapChord, Mach, SectionCoefficients, StallSection};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use rotor_base::{LANES, Lanes};
 use rotor_fem::TimeElements;
 use std::sync::OnceLock;
 
 /// The sections of one station at the azimuth points of a revolution.
 #[derive(Debug, Clone)]
 struct StationAir {
-    /// Coefficients without delay and of apparent mass, by point, `[output][input]`.
-    direct: Vec<Gains>,
-    /// None where there is no apparent mass.
-    rate: Vec<Gains>,
-    /// Gain of the settled lags, output by input, by point.
-    settled: Vec<Gains>,
+    points: usize,
+    /// Coefficients without delay and of apparent mass, by block of points.
+    prompt: Vec<PromptCoefficients<Lanes>>,
+    /// Gain of the settled lags, output by input, by block of points.
+    settled: Vec<Gains<Lanes>>,
     lags: Vec<StationLag>,
     /// The same as one operator.
     whole: StationLags,
@@ -108,21 +112,21 @@ impl FlightAir {
         self.stations.len()
     }
 
-    /// Loads of a lifting station at all points of the revolution for the flows there.
+    /// Loads of a lifting station at all points of the revolution, block by block, for the flows there.
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`].
     pub(crate) fn loads(
         &self,
         station: usize,
-        flows: &[SectionFlow],
+        flows: &[SectionFlow<Lanes>],
         law: LoadLaw<'_>,
         scratch: &mut AirScratch,
-        out: &mut [SectionLoads],
+        out: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
         let (of, law) = (&self.stations[station], law.at(station));
         if law.settled {
-            of.air.settled_loads(flows, law, out);
+            of.air.settled_loads(flows, law, scratch, out);
             return Ok(());
         }
         of.loads(flows, law, scratch, out)
@@ -132,10 +136,20 @@ impl FlightAir {
 /// Reusable arrays of one station.
 #[derive(Debug, Default)]
 pub(crate) struct AirScratch {
-    pasts: Vec<SectionPast>,
+    pasts: Vec<SectionPast<Lanes>>,
     lags: LagScratch,
-    fine_flows: Vec<SectionFlow>,
-    fine_loads: Vec<SectionLoads>,
+    fine: FineScratch,
+}
+
+/// Flows and loads of a station at its own points and at finer ones, each alone and side by side.
+#[derive(Debug, Default)]
+struct FineScratch {
+    flows: Vec<SectionFlow>,
+    finer: Vec<SectionFlow>,
+    blocks: Vec<SectionFlow<Lanes>>,
+    block_loads: Vec<SectionLoads<Lanes>>,
+    finer_loads: Vec<SectionLoads>,
+    loads: Vec<SectionLoads>,
 }
 
 /// How loads follow from the flow and its past.
@@ -220,22 +234,32 @@ impl Station {
 
     fn loads(
         &self,
-        flows: &[SectionFlow],
+        flows: &[SectionFlow<Lanes>],
         law: StationLaw,
         scratch: &mut AirScratch,
-        out: &mut [SectionLoads],
+        out: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
         let Some(fine) = &self.fine else { return self.air.loads(flows, law, scratch, out) };
-        let mut finer = std::mem::take(&mut scratch.fine_flows);
-        let mut loads = std::mem::take(&mut scratch.fine_loads);
-        fine.azimuth.flows(flows, &mut finer);
-        for (flow, rigid) in finer.iter_mut().zip(&fine.rigid_speeds) {
+        let mut of = std::mem::take(&mut scratch.fine);
+        of.flows.clear();
+        of.flows.extend((0..self.air.points).map(|p| flows[p / LANES].lane(p % LANES)));
+        fine.azimuth.flows(&of.flows, &mut of.finer);
+        for (flow, rigid) in of.finer.iter_mut().zip(&fine.rigid_speeds) {
             flow.sense = sense(fine.reverse_flow, flow.u_t, flow.u_p, *rigid);
         }
-        loads.resize(finer.len(), SectionLoads::default());
-        let found = fine.air.loads(&finer, law, scratch, &mut loads);
-        fine.azimuth.loads(&loads, out);
-        (scratch.fine_flows, scratch.fine_loads) = (finer, loads);
+        of.blocks.clear();
+        of.blocks.extend(of.finer.chunks(LANES).map(SectionFlow::gather));
+        of.block_loads.resize(of.blocks.len(), SectionLoads::default());
+        let found = fine.air.loads(&of.blocks, law, scratch, &mut of.block_loads);
+        of.finer_loads.clear();
+        let finer = (0..of.finer.len()).map(|p| of.block_loads[p / LANES].lane(p % LANES));
+        of.finer_loads.extend(finer);
+        of.loads.resize(of.flows.len(), SectionLoads::default());
+        fine.azimuth.loads(&of.finer_loads, &mut of.loads);
+        for (out, loads) in out.iter_mut().zip(of.loads.chunks(LANES)) {
+            *out = SectionLoads::gather(loads);
+        }
+        scratch.fine = of;
         found
     }
 }
@@ -323,7 +347,13 @@ impl StationAir {
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
         let whole = StationLags::new(&lags, collocation.points());
-        Ok(Self { direct, rate, settled, lags, whole, tables, stall })
+        let mut rates = in_lanes(&rate).into_iter();
+        let prompt = in_lanes(&direct)
+            .into_iter()
+            .map(|direct| PromptCoefficients { direct, rate: rates.next() })
+            .collect();
+        let (settled, points) = (in_lanes(&settled), points.len());
+        Ok(Self { points, prompt, settled, lags, whole, tables, stall })
     }
 }
 
@@ -331,13 +361,15 @@ impl StationAir {
     /// Loads over a revolution, at the points of this station.
     fn loads(
         &self,
-        flows: &[SectionFlow],
+        flows: &[SectionFlow<Lanes>],
         law: StationLaw,
         scratch: &mut AirScratch,
-        out: &mut [SectionLoads],
+        out: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
-        let still =
-            |flow: &SectionFlow| flow.input[2..] == [0.0; 2] && flow.input_rate[2..] == [0.0; 2];
+        let zero = Lanes::default();
+        let still = |flow: &SectionFlow<Lanes>| {
+            flow.input[2..] == [zero; 2] && flow.input_rate[2..] == [zero; 2]
+        };
         if law.kind == Kind::FlapSlope && flows.iter().all(still) {
             out.fill(SectionLoads::default());
             return Ok(());
@@ -347,43 +379,42 @@ impl StationAir {
         if let Kind::Whole | Kind::FlapSlope = law.kind {
             self.fill_pasts(flows, scratch)?;
         }
-        for (p, ((load, flow), past)) in out.iter_mut().zip(flows).zip(&scratch.pasts).enumerate() {
-            *load = self.loads_at(p, flow, past, law);
-        }
+        Arch::new().dispatch(Loading { of: self, flows, pasts: &scratch.pasts, law, out });
         Ok(())
     }
 
-    #[inline]
-    fn prompt(&self, point: usize) -> PromptCoefficients<'_> {
-        PromptCoefficients { direct: &self.direct[point], rate: self.rate.get(point) }
-    }
-
     /// The same with every state settled on its input.
-    fn settled_loads(&self, flows: &[SectionFlow], law: StationLaw, out: &mut [SectionLoads]) {
-        for (p, (load, flow)) in out.iter_mut().zip(flows).enumerate() {
-            *load = self.loads_at(p, flow, &self.settled_past(p, flow), law);
-        }
+    fn settled_loads(
+        &self,
+        flows: &[SectionFlow<Lanes>],
+        law: StationLaw,
+        scratch: &mut AirScratch,
+        out: &mut [SectionLoads<Lanes>],
+    ) {
+        scratch.pasts.clear();
+        scratch.pasts.extend(flows.iter().enumerate().map(|(b, flow)| self.settled_past(b, flow)));
+        Arch::new().dispatch(Loading { of: self, flows, pasts: &scratch.pasts, law, out });
     }
 
-    #[inline]
+    #[inline(always)]
     fn loads_at(
         &self,
-        point: usize,
-        flow: &SectionFlow,
-        past: &SectionPast,
+        block: usize,
+        flow: &SectionFlow<Lanes>,
+        past: &SectionPast<Lanes>,
         StationLaw { scales, kind, .. }: StationLaw,
-    ) -> SectionLoads {
+    ) -> SectionLoads<Lanes> {
         let loads = match kind {
-            Kind::Whole => self.whole_loads(point, scales, flow, past),
+            Kind::Whole => self.whole_loads(block, scales, flow, past),
             Kind::FlapSlope => {
                 let frictionless = AirScales { drag: 0.0, ..scales };
-                section_loads(frictionless, flow, self.prompt(point), past.lag)
+                section_loads(frictionless, flow, &self.prompt[block], past.lag)
             }
             Kind::DragAlone => {
                 let SectionFlow { u_t, sense, .. } = *flow;
                 let still = SectionFlow { u_t, sense, ..SectionFlow::default() };
                 let past = SectionPast::default();
-                let SectionLoads { fy, .. } = self.whole_loads(point, scales, &still, &past);
+                let SectionLoads { fy, .. } = self.whole_loads(block, scales, &still, &past);
                 SectionLoads { fy, ..SectionLoads::default() }
             }
             Kind::Nothing => SectionLoads::default(),
@@ -391,23 +422,44 @@ impl StationAir {
         if scales.centre == 0.0 { loads } else { loads.about(scales.centre, flow.pitch) }
     }
 
-    #[inline]
+    #[inline(always)]
     fn whole_loads(
         &self,
-        point: usize,
+        block: usize,
         scales: AirScales,
-        flow: &SectionFlow,
-        past: &SectionPast,
-    ) -> SectionLoads {
-        let prompt = self.prompt(point);
-        let mut loads = match &self.tables {
-            None => section_loads(scales, flow, prompt, past.lag),
-            Some(tables) => tables.loads(point, scales, flow, prompt, past),
-        };
-        if self.stall.is_some() {
-            add_stall(scales, flow, past.stall, &mut loads);
+        flow: &SectionFlow<Lanes>,
+        past: &SectionPast<Lanes>,
+    ) -> SectionLoads<Lanes> {
+        if self.tables.is_none() && self.stall.is_none() {
+            return section_loads(scales, flow, &self.prompt[block], past.lag);
         }
-        loads
+        self.nonlinear_loads(block, scales, flow, past)
+    }
+
+    /// Loads over tables and with stall, lane by lane.
+    fn nonlinear_loads(
+        &self,
+        block: usize,
+        scales: AirScales,
+        flows: &SectionFlow<Lanes>,
+        pasts: &SectionPast<Lanes>,
+    ) -> SectionLoads<Lanes> {
+        let count = LANES.min(self.points - block * LANES);
+        let loads: [SectionLoads; LANES] = std::array::from_fn(|k| {
+            // lanes without a point take the loads of the last one
+            let k = k.min(count - 1);
+            let (flow, past) = (flows.lane(k), pasts.lane(k));
+            let prompt = self.prompt[block].lane(k);
+            let mut loads = match &self.tables {
+                None => section_loads(scales, &flow, &prompt, past.lag),
+                Some(tables) => tables.loads(block * LANES + k, scales, &flow, &prompt, &past),
+            };
+            if self.stall.is_some() {
+                add_stall(scales, &flow, past.stall, &mut loads);
+            }
+            loads
+        });
+        SectionLoads::gather(&loads)
     }
 
     /// What the past adds to the loads at all points.
@@ -416,23 +468,34 @@ impl StationAir {
     /// [`ResponseError::StallNotPeriodic`].
     fn fill_pasts(
         &self,
-        flows: &[SectionFlow],
+        flows: &[SectionFlow<Lanes>],
         AirScratch { pasts, lags, .. }: &mut AirScratch,
     ) -> Result<(), ResponseError> {
-        let write = |p: usize, output: usize, share: f64| match output {
-            RIGID_LIFT => pasts[p].rigid_lift = share,
-            output => pasts[p].lag[output] = share,
+        let write = |p: usize, output: usize, share: f64| {
+            let past = &mut pasts[p / LANES];
+            let row =
+                if output == RIGID_LIFT { &mut past.rigid_lift } else { &mut past.lag[output] };
+            row.0[p % LANES] = share;
         };
-        self.whole.outputs(|p| flows[p].input, lags, write);
-        if let Some(stall) = &self.stall {
-            stall.fill(|p| (&flows[p], self.prompt(p)), pasts)?;
+        self.whole.outputs(|p, input| flows[p / LANES].input[input].0[p % LANES], lags, write);
+        let Some(stall) = &self.stall else { return Ok(()) };
+        let at = |p: usize| (p / LANES, p % LANES);
+        let mut alone: Vec<SectionPast> =
+            (0..self.points).map(at).map(|(block, k)| pasts[block].lane(k)).collect();
+        let drive = |p: usize| {
+            let (block, k) = at(p);
+            (flows[block].lane(k), self.prompt[block].lane(k))
+        };
+        stall.fill(drive, &mut alone)?;
+        for (past, alone) in pasts.iter_mut().zip(alone.chunks(LANES)) {
+            past.stall = std::array::from_fn(|c| gathered(alone, |of| of.stall[c]));
         }
         Ok(())
     }
 
-    /// The same with every state settled on its input, for one point.
-    fn settled_past(&self, point: usize, flow: &SectionFlow) -> SectionPast {
-        let gains = &self.settled[point];
+    /// The same with every state settled on its input, for one block of points.
+    fn settled_past(&self, block: usize, flow: &SectionFlow<Lanes>) -> SectionPast<Lanes> {
+        let gains = &self.settled[block];
         let [normal, rate, ..] = gains[0];
         let mut past = SectionPast {
             lag: gains.each_ref().map(|row| dot(row, &flow.input)),
@@ -440,8 +503,37 @@ impl StationAir {
             ..SectionPast::default()
         };
         if let Some(stall) = &self.stall {
-            past.stall = stall.settled(point, flow, self.prompt(point), &past);
+            let points = LANES.min(self.points - block * LANES);
+            let added: Vec<[f64; 3]> = (0..points)
+                .map(|k| {
+                    let prompt = self.prompt[block].lane(k);
+                    stall.settled(block * LANES + k, &flow.lane(k), &prompt, &past.lane(k))
+                })
+                .collect();
+            past.stall = std::array::from_fn(|c| gathered(&added, |of| of[c]));
         }
         past
+    }
+}
+
+/// Loads of a station from its flows and their past: a type of its own, for a closure would be called, not inlined, by
+/// the function that is compiled for the vector unit.
+struct Loading<'a> {
+    of: &'a StationAir,
+    flows: &'a [SectionFlow<Lanes>],
+    pasts: &'a [SectionPast<Lanes>],
+    law: StationLaw,
+    out: &'a mut [SectionLoads<Lanes>],
+}
+
+impl WithSimd for Loading<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let blocks = self.out.iter_mut().zip(self.flows).zip(self.pasts).enumerate();
+        for (block, ((loads, flow), past)) in blocks {
+            *loads = self.of.loads_at(block, flow, past, self.law);
+        }
     }
 }

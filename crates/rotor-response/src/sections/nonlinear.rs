@@ -68,7 +68,7 @@ impl TabledStation {
         point: usize,
         scales: AirScales,
         flow: &SectionFlow,
-        coefficients: PromptCoefficients<'_>,
+        coefficients: &PromptCoefficients,
         past: &SectionPast,
     ) -> SectionLoads {
         let (mach, slope) = self.points[point];

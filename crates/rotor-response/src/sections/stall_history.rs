@@ -60,7 +60,7 @@ impl StallHistory {
         Self { station, semichord, sections, steps, over_tables }
     }
 
-    fn drive(&self, flow: &SectionFlow, c: PromptCoefficients<'_>, past: &SectionPast) -> Drive {
+    fn drive(&self, flow: &SectionFlow, c: &PromptCoefficients, past: &SectionPast) -> Drive {
         let inverse = flow.u_t.hypot(flow.u_p).max(SLOWEST_FLOW).recip();
         let attached = [0, 1, 2].map(|o| {
             let circulating = dot(&c.direct[o], &flow.input) + past.lag[o];
@@ -86,7 +86,7 @@ impl StallHistory {
         &self,
         point: usize,
         flow: &SectionFlow,
-        coefficients: PromptCoefficients<'_>,
+        coefficients: &PromptCoefficients,
         past: &SectionPast,
     ) -> [f64; 3] {
         if self.over_tables {
@@ -102,9 +102,9 @@ impl StallHistory {
     ///
     /// # Errors
     /// [`ResponseError::StallNotPeriodic`]. A motion that is not finite gives a stall that is not.
-    pub(crate) fn fill<'a>(
+    pub(crate) fn fill(
         &self,
-        flow: impl Fn(usize) -> (&'a SectionFlow, PromptCoefficients<'a>),
+        flow: impl Fn(usize) -> (SectionFlow, PromptCoefficients),
         pasts: &mut [SectionPast],
     ) -> Result<(), ResponseError> {
         let drives: Vec<Drive> = pasts
@@ -112,7 +112,7 @@ impl StallHistory {
             .enumerate()
             .map(|(p, past)| {
                 let (flow, coefficients) = flow(p);
-                self.drive(flow, coefficients, past)
+                self.drive(&flow, &coefficients, past)
             })
             .collect();
         let (Some(last), Some(section)) = (drives.last(), self.sections.last()) else {

@@ -158,11 +158,11 @@ impl StationLags {
         }
     }
 
-    /// The share of the lags in the outputs of the section at all points, for its inputs there; `write` is told
-    /// point, output and share.
+    /// The share of the lags in the outputs of the section at all points, for its inputs by point and number; `write` is
+    /// told point, output and share.
     pub(crate) fn outputs(
         &self,
-        inputs: impl Fn(usize) -> [f64; 4],
+        inputs: impl Fn(usize, usize) -> f64,
         scratch: &mut LagScratch,
         mut write: impl FnMut(usize, usize, f64),
     ) {
@@ -170,7 +170,7 @@ impl StationLags {
         scratch.factors.clear();
         for element in 0..self.elements {
             for input in &self.inputs {
-                scratch.factors.extend((0..g).map(|p| inputs(element * g + p)[*input]));
+                scratch.factors.extend((0..g).map(|p| inputs(element * g + p, *input)));
             }
         }
         Arch::new().dispatch(Shares { lags: self, scratch });
@@ -311,7 +311,7 @@ mod tests {
             // scratch that another station has used
             let mut scratch = LagScratch::default();
             for _ in 0..2 {
-                station.outputs(|p| inputs[p], &mut scratch, |p, o, y| found[p][o] = y);
+                station.outputs(|p, i| inputs[p][i], &mut scratch, |p, o, y| found[p][o] = y);
             }
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 assert!((found - expected).abs() < 1e-13, "{found} {expected}");

@@ -23,6 +23,7 @@ use crate::structure::blade::ResponseBlade;
 use crate::structure::motion::{Foreshortening, ModalRows, Motion};
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
+use rotor_base::{LANES, Lanes, Number};
 use rotor_fem::{ModalBlade, ModalMotion, PitchMotion};
 
 /// Distributed loads at the stations at one azimuth, per length, mass `m0`, length R, time 1/Omega.
@@ -82,23 +83,36 @@ pub(crate) struct BladeState<'a> {
     pub(crate) loads: &'a SpanLoads,
 }
 
-/// Loads of one station at one azimuth, per length: those of [`SpanLoads`].
+/// Loads of one station at one azimuth, or at several side by side, per length: those of [`SpanLoads`].
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct StationLoad {
-    pub(crate) axial: f64,
-    pub(crate) fy: f64,
-    pub(crate) fz: f64,
-    pub(crate) moment: f64,
-    pub(crate) slope: [f64; 2],
-    pub(crate) gravity: [f64; 3],
+pub(crate) struct StationLoad<T = f64> {
+    pub(crate) axial: T,
+    pub(crate) fy: T,
+    pub(crate) fz: T,
+    pub(crate) moment: T,
+    pub(crate) slope: [T; 2],
+    pub(crate) gravity: [T; 3],
+}
+
+impl<T: Number> StationLoad<T> {
+    /// Adds other loads; the weight stays.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.axial += other.axial;
+        self.fy += other.fy;
+        self.fz += other.fz;
+        self.moment += other.moment;
+        for (slope, more) in self.slope.iter_mut().zip(other.slope) {
+            *slope += more;
+        }
+    }
 }
 
 /// What a station does on value, slope and curvature of flap, lag and torsion, per length.
 #[derive(Debug, Clone, Copy)]
-struct StationForce {
-    value: [f64; 3],
-    slope: [f64; 3],
-    curvature: [f64; 2],
+struct StationForce<T> {
+    value: [T; 3],
+    slope: [T; 3],
+    curvature: [T; 2],
 }
 
 /// Scratch arrays of one station: what it does, times its weight, in lanes.
@@ -126,22 +140,51 @@ fn add_work(out: &mut [f64], shape: [f64; 3], [f, g, b]: [&[f64]; 3]) {
     }
 }
 
-/// Work of a station on all modes: a type of its own, for a closure would be called, not inlined, by the function
-/// that is compiled for the vector unit.
-struct StationWork<'a> {
+/// Work of a station on all modes from its loads, block by block of lanes: a type of its own, for a closure would be
+/// called, not inlined, by the function that is compiled for the vector unit.
+struct StationWork<'a, L> {
     blade: &'a ResponseBlade,
+    full: bool,
     i: usize,
-    lanes: usize,
-    forces: &'a ForceRows,
+    motion: &'a Motion,
+    rows: &'a ModalRows,
+    foreshortening: &'a Foreshortening,
+    /// Pitch and loads of a block.
+    at: L,
+    forces: &'a mut ForceRows,
     out: &'a mut [f64],
 }
 
-impl WithSimd for StationWork<'_> {
+impl<L: BlockLoad> WithSimd for StationWork<'_, L> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { blade, i, lanes, forces, out } = self;
+        let Self { blade, full, i, motion, rows, foreshortening, at, forces, out } = self;
+        let lanes = rows.lanes();
+        forces.resize(lanes);
+        let [_, across] = blade.cone;
+        let outboard = blade.lag_outboard.iter().map(|moment| 2.0 * across * moment[i]);
+        rows.sum(&mut forces.coriolis, (1, blade.flap.count()), outboard);
+        let shortening_rate = foreshortening.at(1, i);
+        let second = full && !shortening_rate.is_empty();
+        let weight = blade.grid.weight()[i];
+        for block in 0..lanes / LANES {
+            let (pitch, load) = at.at(block);
+            let second = if second {
+                [Lanes::read(shortening_rate, block), Lanes::read(&forces.coriolis, block)]
+            } else {
+                [Lanes::default(); 2]
+            };
+            let force = station_force(blade, full, (i, motion, block), (pitch, &load), second);
+            for k in 0..3 {
+                (force.value[k] * weight).write(&mut forces.value[k], block);
+                (force.slope[k] * weight).write(&mut forces.slope[k], block);
+            }
+            for k in 0..2 {
+                (force.curvature[k] * weight).write(&mut forces.curvature[k], block);
+            }
+        }
         let mut rows = out.chunks_exact_mut(lanes);
         for (k, of) in [&blade.flap, &blade.lag, &blade.torsion].into_iter().enumerate() {
             let [f, g] = [&forces.value[k], &forces.slope[k]];
@@ -152,6 +195,24 @@ impl WithSimd for StationWork<'_> {
                 add_work(out, [value[i], slope[i], bent * curvature[i]], [f, g, b]);
             }
         }
+    }
+}
+
+/// Pitch and loads of a station in a block of lanes. Its function is to be `inline(always)`: only then is it compiled for
+/// the vector unit.
+pub(crate) trait BlockLoad {
+    fn at(&self, block: usize) -> (PitchMotion<Lanes>, StationLoad<Lanes>);
+}
+
+/// A pitch without loads.
+struct Unloaded(PitchMotion);
+
+impl BlockLoad for Unloaded {
+    #[inline(always)]
+    fn at(&self, _: usize) -> (PitchMotion<Lanes>, StationLoad<Lanes>) {
+        let PitchMotion { angle_rad, rate, acceleration } = self.0;
+        let [angle_rad, rate, acceleration] = [angle_rad, rate, acceleration].map(Lanes::of);
+        (PitchMotion { angle_rad, rate, acceleration }, StationLoad::default())
     }
 }
 
@@ -200,40 +261,18 @@ impl Equations<'_> {
     }
 
     /// Adds what one station does in the equations of `Linear` and `Full` to the generalised residual, mode by mode
-    /// in lanes: without the constant mass part, damping and springs at the root. `at` gives pitch and loads of a lane.
+    /// in lanes: without the constant mass part, damping and springs at the root. `at` gives pitch and loads of a block.
     pub(crate) fn add_station(
         &self,
         i: usize,
         motion: &Motion,
         (rows, foreshortening): (&ModalRows, &Foreshortening),
-        at: impl Fn(usize) -> (PitchMotion, StationLoad),
+        at: impl BlockLoad,
         (forces, out): (&mut ForceRows, &mut [f64]),
     ) {
-        let blade = self.blade;
-        let lanes = rows.lanes();
-        forces.resize(lanes);
-        let full = self.couplings != Couplings::Linear;
-        let [_, across] = blade.cone;
-        let outboard = blade.lag_outboard.iter().map(|moment| 2.0 * across * moment[i]);
-        rows.sum(&mut forces.coriolis, (1, blade.flap.count()), outboard);
-        let shortening_rate = |lane: usize| foreshortening.at(1, i).get(lane).copied();
-        let weight = blade.grid.weight()[i];
-        for lane in 0..lanes {
-            let (pitch, load) = at(lane);
-            let second = match shortening_rate(lane) {
-                Some(rate) if full => [rate, forces.coriolis[lane]],
-                _ => [0.0; 2],
-            };
-            let force = station_force(blade, full, (i, motion, lane), (pitch, &load), second);
-            for k in 0..3 {
-                forces.value[k][lane] = weight * force.value[k];
-                forces.slope[k][lane] = weight * force.slope[k];
-            }
-            for k in 0..2 {
-                forces.curvature[k][lane] = weight * force.curvature[k];
-            }
-        }
-        Arch::new().dispatch(StationWork { blade, i, lanes, forces, out });
+        let (blade, full) = (self.blade, self.couplings != Couplings::Linear);
+        let work = StationWork { blade, full, i, motion, rows, foreshortening, at, forces, out };
+        Arch::new().dispatch(work);
     }
 
     /// Generalised residual of one azimuth without air, without the constant mass part and without damping.
@@ -257,11 +296,14 @@ impl Equations<'_> {
         rows.fill_state(coordinates);
         shortening.fill(blade, self.couplings, &rows);
         let mut forces = ForceRows::default();
-        out.fill(0.0);
+        let mut in_lanes = vec![0.0; out.len() * LANES];
         for i in 0..blade.grid.len() {
             motion.fill_station(blade, i, &rows, &shortening);
-            let unloaded = |_| (pitch, StationLoad::default());
-            self.add_station(i, &motion, (&rows, &shortening), unloaded, (&mut forces, out));
+            let state = (&rows, &shortening);
+            self.add_station(i, &motion, state, Unloaded(pitch), (&mut forces, &mut in_lanes));
+        }
+        for (o, lanes) in out.iter_mut().zip(in_lanes.chunks_exact(LANES)) {
+            *o = lanes[0];
         }
         for (o, springs) in out.iter_mut().zip(blade.root_spring.row_iter()) {
             *o += springs.iter().zip(coordinates[0]).map(|(k, q)| k * q).sum::<f64>();
@@ -279,51 +321,52 @@ fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]
     }
 }
 
-/// What one station does at one azimuth, `Full` or `Linear`; its motion stands in a lane, `second` is what the integrals
+/// What one station does at one azimuth, or at several side by side, `Full` or `Linear`; its motion stands in a lane or a
+/// block of lanes, `second` is what the integrals
 /// along the blade give there: rate of the foreshortening and Coriolis tension.
-#[inline]
-fn station_force(
+#[inline(always)]
+fn station_force<T: Number>(
     blade: &ResponseBlade,
     full: bool,
     (i, motion, lane): (usize, &Motion, usize),
-    (pitch, load): (PitchMotion, &StationLoad),
-    [foreshortening_rate, coriolis_tension]: [f64; 2],
-) -> StationForce {
+    (pitch, load): (PitchMotion<T>, &StationLoad<T>),
+    [foreshortening_rate, coriolis_tension]: [T; 2],
+) -> StationForce<T> {
     let [along, across] = blade.cone;
     let (m, x) = (blade.mass[i], blade.grid.x()[i]);
     let (w, v, phi) = (&motion.w, &motion.v, &motion.phi);
-    let theta = pitch.angle_rad + blade.twist[i] + phi.value[lane];
-    let tension = blade.tension[i] + coriolis_tension;
+    let theta = pitch.angle_rad + blade.twist[i] + phi.value::<T>(lane);
+    let tension = coriolis_tension + blade.tension[i];
     let radii = blade.km2_squared[i] - blade.km1_squared[i];
     let (eiy, eiz) = (blade.ei_flap[i], blade.ei_lag[i]);
     let [_, gravity_y, gravity_z] = load.gravity;
-    let (weight_y, weight_z) = (m * gravity_y, m * gravity_z);
-    let (w_xx, v_xx) = (w.curvature[lane], v.curvature[lane]);
+    let (weight_y, weight_z) = (gravity_y * m, gravity_z * m);
+    let (w_xx, v_xx): (T, T) = (w.curvature(lane), v.curvature(lane));
     let (curvature, propeller) = if full {
         let (sin, cos) = theta.sin_cos();
         let kz = v_xx * cos + w_xx * sin;
         let ky = w_xx * cos - v_xx * sin;
-        let bending = [eiz * kz * sin + eiy * ky * cos, eiz * kz * cos - eiy * ky * sin];
-        (bending, m * radii * sin * cos + (eiz - eiy) * kz * ky)
+        let bending = [kz * eiz * sin + ky * eiy * cos, kz * eiz * cos - ky * eiy * sin];
+        (bending, sin * cos * (m * radii) + kz * ky * (eiz - eiy))
     } else {
-        ([eiy * w_xx, eiz * v_xx], m * radii * theta)
+        ([w_xx * eiy, v_xx * eiz], theta * (m * radii))
     };
     let km_squared = blade.km1_squared[i] + blade.km2_squared[i];
     StationForce {
         value: [
-            m * along * (across * x + 2.0 * v.rate[lane] - along * w.value[lane])
+            (v.rate::<T>(lane) * 2.0 + across * x - w.value::<T>(lane) * along) * (m * along)
                 - load.fz
                 - weight_z,
-            -m * (blade.offsets.torque + v.value[lane])
-                - 2.0 * m * (across * foreshortening_rate + along * w.rate[lane])
+            -((v.value::<T>(lane) + blade.offsets.torque) * m)
+                - (foreshortening_rate * across + w.rate::<T>(lane) * along) * (2.0 * m)
                 - load.fy
                 - weight_y,
-            m * km_squared * pitch.acceleration + propeller - load.moment,
+            pitch.acceleration * (m * km_squared) + propeller - load.moment,
         ],
         slope: [
-            tension * w.slope[lane] - load.slope[1],
-            tension * v.slope[lane] - load.slope[0],
-            (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]) * phi.slope[lane],
+            tension * w.slope::<T>(lane) - load.slope[1],
+            tension * v.slope::<T>(lane) - load.slope[0],
+            phi.slope::<T>(lane) * (blade.gj[i] + blade.ka_squared[i] * blade.tension[i]),
         ],
         curvature,
     }

@@ -6,6 +6,7 @@
 use crate::Couplings;
 use crate::structure::blade::{ResponseBlade, Shapes};
 use pulp::{Arch, Simd, WithSimd};
+use rotor_base::{LANES, Number};
 use rotor_fem::OrbitSamples;
 use std::ops::Range;
 
@@ -35,6 +36,20 @@ fn combine<'a>(out: &mut Vec<f64>, lanes: usize, terms: impl Iterator<Item = (f6
     }
 }
 
+/// A field at a lane, or at a block of lanes.
+macro_rules! fields_in_lanes {
+    ($($field:ident)*) => {
+        impl Deflection {$(
+            #[inline(always)]
+            pub(crate) fn $field<T: Number>(&self, lane: usize) -> T {
+                T::read(&self.$field, lane)
+            }
+        )*}
+    };
+}
+
+fields_in_lanes!(value slope curvature rate slope_rate acceleration);
+
 impl Deflection {
     /// Every field with the shapes it is made of, and which of coordinates, rates and accelerations go with them.
     #[inline(always)]
@@ -56,7 +71,8 @@ impl Deflection {
 /// A field, the shapes it is made of, and which of coordinates, rates and accelerations go with them.
 type Field<'a> = (&'a mut Vec<f64>, &'a [Vec<f64>], usize);
 
-/// Modal motion over a revolution, mode by mode in the order flap, lag, torsion: a lane for every azimuth point.
+/// Modal motion over a revolution, mode by mode in the order flap, lag, torsion: a lane for every azimuth point, and lanes
+/// at rest that fill the last block.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct ModalRows {
     lanes: usize,
@@ -67,9 +83,11 @@ pub(crate) struct ModalRows {
 impl ModalRows {
     /// Those of an orbit at all its points.
     pub(crate) fn fill(&mut self, samples: &OrbitSamples) {
-        let (dof, lanes) = samples.q.shape();
+        let (dof, points) = samples.q.shape();
+        let lanes = points.next_multiple_of(LANES);
         self.lanes = lanes;
         for (part, of) in self.parts.iter_mut().zip([&samples.q, &samples.qd, &samples.qdd]) {
+            part.clear();
             part.resize(dof * lanes, 0.0);
             for (p, column) in of.as_slice().chunks_exact(dof).enumerate() {
                 for (j, value) in column.iter().enumerate() {
@@ -79,15 +97,19 @@ impl ModalRows {
         }
     }
 
-    /// Those of one state: one lane.
+    /// Those of one state, in the first lane.
     pub(crate) fn fill_state(&mut self, coordinates: [&[f64]; 3]) {
-        self.lanes = 1;
+        self.lanes = LANES;
         for (part, of) in self.parts.iter_mut().zip(coordinates) {
             part.clear();
-            part.extend_from_slice(of);
+            for value in of {
+                part.push(*value);
+                part.resize(part.len() + LANES - 1, 0.0);
+            }
         }
     }
 
+    /// Points, and what fills the last block of them.
     pub(crate) fn lanes(&self) -> usize {
         self.lanes
     }
@@ -188,12 +210,16 @@ impl Motion {
         &mut self.shortening[rate]
     }
 
-    /// Axial displacement in a lane by foreshortening with two rates, R; nothing unless the couplings are
-    /// `Moderate`.
-    #[inline]
-    pub(crate) fn shortening(&self, lane: usize) -> [f64; 3] {
+    /// Axial displacement in a lane, or a block of lanes, by foreshortening with two rates, R; nothing unless the couplings
+    /// are `Moderate`.
+    #[inline(always)]
+    pub(crate) fn shortening<T: Number>(&self, lane: usize) -> [T; 3] {
         let [u, rate, acceleration] = &self.shortening;
-        if u.is_empty() { [0.0; 3] } else { [u[lane], rate[lane], acceleration[lane]] }
+        if u.is_empty() {
+            [T::default(); 3]
+        } else {
+            [T::read(u, lane), T::read(rate, lane), T::read(acceleration, lane)]
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::{FlightAir, StationAir};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use rotor_base::LANES;
 use rotor_fem::LagChannel;
 
 /// Change of the lag part of lift and moment at a point with the first two inputs at all points, beyond
@@ -65,10 +66,10 @@ impl FlightAir {
 
 impl StationAir {
     fn lift_slope(&self) -> DMatrix<f64> {
-        let points = self.direct.len();
+        let points = self.points;
         let mut slope = DMatrix::zeros(points, points);
         for p in 0..points {
-            slope[(p, p)] = self.direct[p][0][0];
+            slope[(p, p)] = self.prompt[p / LANES].direct[0][0].0[p % LANES];
         }
         for channel in self.lags.iter().filter(|lag| lag.input[0] != 0.0) {
             for (_, gains) in channel.gains.iter().filter(|(output, _)| *output == 0) {
@@ -84,7 +85,7 @@ impl StationAir {
     }
 
     fn channels(&self) -> Vec<LagChannel> {
-        let points = self.direct.len();
+        let points = self.points;
         let of = |lag: &super::StationLag| {
             let mut gains = vec![[0.0; 2]; points];
             for (output, along) in lag.gains.iter().filter(|(output, _)| *output < 2) {
@@ -101,7 +102,7 @@ impl StationAir {
     }
 
     fn memory(&self) -> Option<StationMemory> {
-        let points = self.direct.len();
+        let points = self.points;
         let zero = || DMatrix::zeros(points, points);
         let mut kernels = [[zero(), zero()], [zero(), zero()]];
         let mut any = false;
