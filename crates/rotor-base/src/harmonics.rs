@@ -45,6 +45,16 @@ pub fn uniform_azimuths_rad(count: usize) -> Vec<f64> {
     (0..count).map(|i| TAU * i as f64 / count as f64).collect()
 }
 
+/// `1, cos psi, sin psi, cos 2 psi, sin 2 psi, ...` up to a harmonic.
+pub fn harmonic_waves(azimuth_rad: f64, count: usize) -> impl Iterator<Item = f64> {
+    let (sin1, cos1) = azimuth_rad.sin_cos();
+    let turned = move |[cos_n, sin_n]: &[f64; 2]| {
+        Some([cos_n * cos1 - sin_n * sin1, sin_n * cos1 + cos_n * sin1])
+    };
+    let pairs = std::iter::successors(Some([cos1, sin1]), turned).take(count);
+    std::iter::once(1.0).chain(pairs.flatten())
+}
+
 /// A periodic signal as a truncated Fourier series,
 /// `f(psi) = mean + sum_n (c_n cos n psi + s_n sin n psi)`.
 #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -187,6 +197,17 @@ mod tests {
         for n in 1..=5 {
             assert_abs_diff_eq!(g.harmonic(n).cosine, f.harmonic(n).cosine, epsilon = 1e-14);
             assert_abs_diff_eq!(g.harmonic(n).sine, f.harmonic(n).sine, epsilon = 1e-14);
+        }
+    }
+
+    #[test]
+    fn waves_are_cosines_and_sines_of_the_multiples() {
+        let found: Vec<f64> = harmonic_waves(0.7, 20).collect();
+        assert_eq!((found.len(), found[0].to_bits()), (41, 1.0_f64.to_bits()));
+        for k in 1..=20 {
+            let (sin, cos) = (0.7 * k as f64).sin_cos();
+            assert_abs_diff_eq!(found[2 * k - 1], cos, epsilon = 1e-14);
+            assert_abs_diff_eq!(found[2 * k], sin, epsilon = 1e-14);
         }
     }
 

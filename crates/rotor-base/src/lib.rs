@@ -21,7 +21,7 @@ mod stats;
 
 pub use error::BaseError;
 pub use frames::rotating_to_fixed;
-pub use harmonics::{Harmonic, HarmonicSeries, uniform_azimuths_rad, wrap_degrees};
+pub use harmonics::{Harmonic, HarmonicSeries, harmonic_waves, uniform_azimuths_rad, wrap_degrees};
 pub use lanes::{LANES, Lanes, Number};
 pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatto_nodes};
 pub use record_use::RecordUse;

@@ -3,7 +3,7 @@
 use crate::response::revolution::{Lifting, unit_weights};
 use crate::{ResponseError, Rotor};
 use nalgebra::DMatrix;
-use rotor_base::uniform_azimuths_rad;
+use rotor_base::{harmonic_waves, uniform_azimuths_rad};
 use rotor_fem::TimeElements;
 use rotor_wake::{CirculationMap, RotorLoading, WakeRotor};
 
@@ -27,15 +27,13 @@ const OVERLAP: f64 = 0.02;
 /// Harmonics up to `most` that the points of the time elements resolve: of any two of them, and of one with itself, the
 /// quadrature takes the mean of the product right.
 pub(crate) fn resolved_harmonics(time: &TimeElements, weights: &[f64], most: usize) -> usize {
-    let overlap = |m: usize| {
-        let (mut c, mut s) = (0.0, 0.0);
-        for (psi, w) in time.points().iter().zip(weights) {
-            let (sin, cos) = (m as f64 * psi).sin_cos();
-            c += w * cos;
-            s += w * sin;
+    let mut sums = vec![0.0; 1 + 4 * most];
+    for (psi, weight) in time.points().iter().zip(weights) {
+        for (sum, wave) in sums.iter_mut().zip(harmonic_waves(*psi, 2 * most)) {
+            *sum += weight * wave;
         }
-        c.hypot(s)
-    };
+    }
+    let overlap = |m: usize| sums[2 * m - 1].hypot(sums[2 * m]);
     (1..=most).take_while(|n| overlap(2 * n - 1).max(overlap(2 * n)) < OVERLAP).count()
 }
 
@@ -71,11 +69,11 @@ pub(crate) fn circulation(
     let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
     let weights = unit_weights(time);
     let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
-    let rows: Vec<Vec<f64>> =
-        lifting.iter().map(|row| row.iter().map(|l| l.circulation).collect()).collect();
     let panels = wake_rotor.stations();
-    let history = DMatrix::from_fn(rows.len(), panels.len(), |p, s| {
-        weights[p] * between(stations, &rows[p], panels[s])
+    let of_panels: Vec<_> = panels.iter().map(|r| shares(stations, *r)).collect();
+    let history = DMatrix::from_fn(lifting.len(), panels.len(), |p, s| {
+        let parts = of_panels[s].iter().filter(|(_, share)| *share != 0.0);
+        weights[p] * parts.map(|(at, share)| share * lifting[p][*at].circulation).sum::<f64>()
     });
     // mean, then cosine and sine of every harmonic
     let mut coefficients = waves(harmonics, time.points()).tr_mul(&history);
@@ -86,14 +84,8 @@ pub(crate) fn circulation(
 
 /// One, and cosine and sine of every harmonic, at azimuths: a row for each.
 fn waves(harmonics: usize, azimuths_rad: &[f64]) -> DMatrix<f64> {
-    let mut waves = DMatrix::from_element(azimuths_rad.len(), 1 + 2 * harmonics, 1.0);
-    for k in 1..=harmonics {
-        for (row, psi) in azimuths_rad.iter().enumerate() {
-            let (sin, cos) = (k as f64 * psi).sin_cos();
-            (waves[(row, 2 * k - 1)], waves[(row, 2 * k)]) = (cos, sin);
-        }
-    }
-    waves
+    let waves = azimuths_rad.iter().flat_map(|psi| harmonic_waves(*psi, harmonics));
+    DMatrix::from_row_iterator(azimuths_rad.len(), 1 + 2 * harmonics, waves)
 }
 
 /// Mean over the revolution of the lift of one blade, `m0 Omega^2 R^2`.

@@ -3,18 +3,27 @@
 use super::check_table;
 use crate::WakeError;
 use crate::WakeRotor;
-use rotor_base::HarmonicSeries;
+use rotor_base::{harmonic_waves, uniform_azimuths_rad};
+use std::sync::OnceLock;
 
 /// Induced inflow at the middles of the panels and at uniform azimuths, tip speed, down positive.
 ///
 /// Between azimuths the value follows the harmonics of the table, between stations a straight line;
 /// beyond the first and the last station it stays what it is there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct InflowMap {
     stations: Vec<f64>,
     widths: Vec<f64>,
     values: Vec<f64>,
-    series: Vec<HarmonicSeries>,
+    /// All harmonics that the azimuths resolve, once they are asked for: [`harmonic_waves`] by panels.
+    harmonics: OnceLock<Vec<f64>>,
+}
+
+impl PartialEq for InflowMap {
+    fn eq(&self, other: &Self) -> bool {
+        let of = |map: &Self| (map.stations.clone(), map.widths.clone(), map.values.clone());
+        of(self) == of(other)
+    }
 }
 
 impl InflowMap {
@@ -25,8 +34,8 @@ impl InflowMap {
     pub fn new(rotor: &WakeRotor, values: Vec<f64>) -> Result<Self, WakeError> {
         let panels = rotor.panels();
         check_table(["number of inflow values", "inflow value"], panels, &values)?;
-        let series = series(&values, panels);
-        Ok(Self { stations: rotor.stations(), widths: rotor.widths(), values, series })
+        let harmonics = OnceLock::new();
+        Ok(Self { stations: rotor.stations(), widths: rotor.widths(), values, harmonics })
     }
 
     /// A table of the same shape with other values.
@@ -38,8 +47,8 @@ impl InflowMap {
             let (expected, got) = (self.values.len(), values.len());
             return Err(WakeError::ParameterCount { expected, got });
         }
-        let series = series(values, self.stations.len());
-        Ok(Self { values: values.to_vec(), series, ..self.clone() })
+        let (stations, widths) = (self.stations.clone(), self.widths.clone());
+        Ok(Self { stations, widths, values: values.to_vec(), harmonics: OnceLock::new() })
     }
 
     /// Number of azimuths.
@@ -65,7 +74,7 @@ impl InflowMap {
 
     /// Induced inflow at several stations (unit `R`) of one azimuth, rad.
     pub fn along(&self, azimuth_rad: f64, stations: &[f64]) -> Vec<f64> {
-        let table: Vec<f64> = self.series.iter().map(|s| s.value(azimuth_rad)).collect();
+        let table = self.of_panels(azimuth_rad);
         let between = |&r: &f64| {
             let (a, b, t) = self.place(r);
             table[a] + t * (table[b] - table[a])
@@ -76,8 +85,46 @@ impl InflowMap {
     /// Induced inflow at one azimuth (rad) and station (unit `R`).
     pub fn at(&self, azimuth_rad: f64, r: f64) -> f64 {
         let (a, b, t) = self.place(r);
-        let (low, high) = (self.series[a].value(azimuth_rad), self.series[b].value(azimuth_rad));
-        low + t * (high - low)
+        let table = self.of_panels(azimuth_rad);
+        table[a] + t * (table[b] - table[a])
+    }
+
+    /// Number of harmonics that the azimuths resolve.
+    fn resolved(&self) -> usize {
+        self.azimuths().saturating_sub(1) / 2
+    }
+
+    /// Induced inflow at the panels at an azimuth, rad.
+    fn of_panels(&self, azimuth_rad: f64) -> Vec<f64> {
+        let panels = self.stations.len();
+        let harmonics = self.harmonics.get_or_init(|| self.harmonics());
+        let mut sums = vec![0.0; panels];
+        for (wave, row) in
+            harmonic_waves(azimuth_rad, self.resolved()).zip(harmonics.chunks_exact(panels))
+        {
+            for (sum, coefficient) in sums.iter_mut().zip(row) {
+                *sum += wave * coefficient;
+            }
+        }
+        sums
+    }
+
+    /// All harmonics of each panel that the azimuths resolve, harmonic by harmonic.
+    fn harmonics(&self) -> Vec<f64> {
+        let (panels, azimuths) = (self.stations.len(), self.azimuths());
+        let mut sums = vec![0.0; (1 + 2 * self.resolved()) * panels];
+        for (azimuth, row) in
+            uniform_azimuths_rad(azimuths).into_iter().zip(self.values.chunks_exact(panels))
+        {
+            let waves = harmonic_waves(azimuth, self.resolved());
+            for (k, (sums, wave)) in sums.chunks_exact_mut(panels).zip(waves).enumerate() {
+                let weight = wave * if k == 0 { 1.0 } else { 2.0 } / azimuths as f64;
+                for (sum, value) in sums.iter_mut().zip(row) {
+                    *sum += weight * value;
+                }
+            }
+        }
+        sums
     }
 
     fn place(&self, r: f64) -> (usize, usize, f64) {
@@ -104,14 +151,4 @@ impl InflowMap {
         }
         sum / area
     }
-}
-
-/// All harmonics of each panel that the azimuths resolve.
-fn series(values: &[f64], panels: usize) -> Vec<HarmonicSeries> {
-    let count = (values.len() / panels).saturating_sub(1) / 2;
-    let of = |panel: usize| {
-        let column: Vec<f64> = values.iter().skip(panel).step_by(panels).copied().collect();
-        HarmonicSeries::from_uniform_samples(&column, count).unwrap_or_default()
-    };
-    (0..panels).map(of).collect()
 }
