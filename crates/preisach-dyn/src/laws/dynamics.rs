@@ -1,11 +1,15 @@
 //! The dynamic Preisach actuator, paper equation (5).
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::check::{check_not_negative, check_that};
 use crate::laws::play_map::NodeTable;
 use crate::{
     HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach,
     StepCounts,
 };
+use pulp::{Arch, Simd, WithSimd};
+use rotor_base::{LANES, Lanes, Number};
 use serde::{Deserialize, Serialize};
 
 /// How equation (5) is kept solvable.
@@ -54,17 +58,68 @@ pub struct OutputRate {
 ///
 /// The root is the one that stays finite as `G2 -> 0`.
 /// Source: Viswamurthy and Ganguli, equation (5); how to solve it for `d` is not said there.
+#[inline(always)]
 pub fn output_rate(g: [f64; 3], base: f64, weight: f64) -> OutputRate {
     let [g0, g1, g2] = g;
     let b = weight - g1;
     let q = g0 - base;
     let discriminant = b * b - 4.0 * g2 * q;
-    if discriminant < 0.0 {
-        return OutputRate { rate_deg_s: b / (2.0 * g2), folded: true };
-    }
+    let folded = discriminant < 0.0;
     let denominator = b + discriminant.sqrt().copysign(b);
-    let rate_deg_s = if q == 0.0 { 0.0 } else { 2.0 * q / denominator };
-    OutputRate { rate_deg_s, folded: false }
+    // one quotient, and no branch: side by side, every lane goes the same way
+    let (over, under) = if folded { (b, 2.0 * g2) } else { (2.0 * q, denominator) };
+    let quotient = over / under;
+    let rate_deg_s = if !folded && q == 0.0 { 0.0 } else { quotient };
+    OutputRate { rate_deg_s, folded }
+}
+
+/// The backward difference `delta_{n+1} = base + weight d`, `base = (now delta_n - before delta_{n-1}) scale`.
+///
+/// ```text
+/// Euler:  base = delta_n,  weight = h
+/// BDF2:   delta_{n+1} = [ (1+w)^2 delta_n - w^2 delta_{n-1} + (1+w) h d ] / (1 + 2 w),  w = h / h_n
+/// ```
+/// Source: Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, section III.5.
+#[derive(Debug, Clone, Copy)]
+struct BackwardDifference<T> {
+    now: T,
+    before: T,
+    scale: T,
+    /// s.
+    weight: T,
+}
+
+impl BackwardDifference<f64> {
+    /// Of a step after an earlier one, if there was one; lengths in s.
+    fn new(order: TimeOrder, step_s: f64, earlier_step_s: Option<f64>) -> Self {
+        match (order, earlier_step_s) {
+            (TimeOrder::Second, Some(earlier_step_s)) => {
+                let w = step_s / earlier_step_s;
+                let scale = 1.0 / (1.0 + 2.0 * w);
+                let plus = 1.0 + w;
+                Self { now: plus * plus, before: w * w, scale, weight: plus * step_s * scale }
+            }
+            _ => Self { now: 1.0, before: 0.0, scale: 1.0, weight: step_s },
+        }
+    }
+}
+
+impl<T: Number> BackwardDifference<T> {
+    #[inline(always)]
+    fn base(&self, now: T, before: T) -> T {
+        (self.now * now - self.before * before) * self.scale
+    }
+}
+
+impl From<[BackwardDifference<f64>; LANES]> for BackwardDifference<Lanes> {
+    fn from(lanes: [BackwardDifference<f64>; LANES]) -> Self {
+        Self {
+            now: Lanes(lanes.map(|of| of.now)),
+            before: Lanes(lanes.map(|of| of.before)),
+            scale: Lanes(lanes.map(|of| of.scale)),
+            weight: Lanes(lanes.map(|of| of.weight)),
+        }
+    }
 }
 
 /// The output history the time integration looks back on.
@@ -82,32 +137,14 @@ impl OutputHistory {
         Self { output_deg, earlier: None }
     }
 
-    /// `base` and `weight` of the backward difference `delta = base + weight d` over a new step.
-    ///
-    /// ```text
-    /// Euler:  base = delta_n,  weight = h
-    /// BDF2:   delta_{n+1} = [ (1+w)^2 delta_n - w^2 delta_{n-1} + (1+w) h d ] / (1 + 2 w),  w = h / h_n
-    /// ```
-    /// Source: Hairer, Norsett, Wanner, *Solving Ordinary Differential Equations I*, section III.5.
-    fn difference(&self, order: TimeOrder, step_s: f64) -> (f64, f64) {
-        match (order, self.earlier) {
-            (TimeOrder::Second, Some((earlier_deg, earlier_step_s))) => {
-                let w = step_s / earlier_step_s;
-                let scale = 1.0 / (1.0 + 2.0 * w);
-                let plus = 1.0 + w;
-                let base = (plus * plus * self.output_deg - w * w * earlier_deg) * scale;
-                (base, plus * step_s * scale)
-            }
-            _ => (self.output_deg, step_s),
-        }
-    }
-
     /// One time step on with the maps `G0, G1, G2` there; whether it was a fold.
     #[inline]
     fn advance(&mut self, g: [f64; 3], order: TimeOrder, step_s: f64) -> bool {
-        let (base, weight) = self.difference(order, step_s);
-        let OutputRate { rate_deg_s, folded } = output_rate(g, base, weight);
-        let output_deg = base + weight * rate_deg_s;
+        let (earlier_deg, earlier_step_s) = self.earlier.unzip();
+        let difference = BackwardDifference::new(order, step_s, earlier_step_s);
+        let base = difference.base(self.output_deg, earlier_deg.unwrap_or_default());
+        let OutputRate { rate_deg_s, folded } = output_rate(g, base, difference.weight);
+        let output_deg = base + difference.weight * rate_deg_s;
         *self = Self { output_deg, earlier: Some((self.output_deg, step_s)) };
         folded
     }
@@ -128,7 +165,7 @@ impl OutputHistory {
 pub struct DynamicPreisach {
     parameters: DynamicParameters,
     /// Values of `G0, G1, G2` at every node, then their rises to the next.
-    table: NodeTable<6>,
+    table: NodeTable<[f64; 6]>,
 }
 
 /// The numbers that make a [`DynamicPreisach`], as they are written to files.
@@ -260,69 +297,142 @@ impl DynamicPreisach {
                 })
             }));
         }
-        let groups = maps.chunks(TOGETHER);
-        let values: Vec<Vec<f64>> =
-            groups.flat_map(|group| map_values(group, first.grid(), voltages_volt)).collect();
-        let begun = |(model, places): (&&Self, [usize; 3])| {
-            let maps = places.map(|place| values[place].as_slice());
-            let start_deg = maps[0].first().copied();
-            let mut output_deg = Vec::with_capacity(voltages_volt.len());
-            output_deg.extend(start_deg);
-            let history = OutputHistory::at_rest(start_deg.unwrap_or_default());
-            March { order: model.parameters.time_order, maps, history, output_deg }
-        };
-        let mut marches: Vec<March<'_>> = models.iter().zip(places).map(begun).collect();
-        // sample by sample: the steps of one model wait for each other, those of several do not
-        for i in 1..voltages_volt.len() {
-            for March { order, maps: [g0, g1, g2], history, output_deg } in &mut marches {
-                history.advance([g0[i], g1[i], g2[i]], *order, time_step_s);
-                output_deg.push(history.output_deg);
-            }
-        }
-        marches.into_iter().map(|march| march.output_deg).collect()
+        let groups: Vec<Vec<Lanes>> = maps
+            .chunks(LANES)
+            .map(|group| map_values(group, first.grid(), voltages_volt))
+            .collect();
+        let models: Vec<Marching<'_>> = models
+            .iter()
+            .zip(places)
+            .map(|(model, places)| Marching {
+                order: model.parameters.time_order,
+                maps: places.map(|place| (groups[place / LANES].as_slice(), place % LANES)),
+            })
+            .collect();
+        let marched = models.chunks(LANES).flat_map(|models| {
+            Arch::new().dispatch(March { models, samples: voltages_volt.len(), time_step_s })
+        });
+        marched.collect()
     }
 }
 
-/// One model on its way over the samples.
-struct March<'a> {
+/// One model on its way over the samples: `G0`, `G1` and `G2` at every sample, each with its lane.
+struct Marching<'a> {
     order: TimeOrder,
-    /// `G0`, `G1` and `G2` at every sample.
-    maps: [&'a [f64]; 3],
-    history: OutputHistory,
-    output_deg: Vec<f64>,
+    maps: [(&'a [Lanes], usize); 3],
 }
 
-/// The values of at most [`TOGETHER`] maps over voltages, from rest at the first: the plays move once
+/// At most [`LANES`] models side by side: the steps of one wait for each other, those of several do not. A type of its
+/// own, for a closure would be called, not inlined, by the function that is compiled for the vector unit.
+struct March<'a> {
+    models: &'a [Marching<'a>],
+    samples: usize,
+    time_step_s: f64,
+}
+
+impl WithSimd for March<'_> {
+    type Output = Vec<Vec<f64>>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<Vec<f64>> {
+        let Self { models, samples, time_step_s } = self;
+        let mut outputs = vec![Vec::with_capacity(samples); models.len()];
+        let Some(last) = models.len().checked_sub(1) else { return outputs };
+        let of = |lane: usize| &models[lane.min(last)];
+        let maps: [_; LANES] = std::array::from_fn(|lane| of(lane).maps);
+        let [first, after] = [None, Some(time_step_s)].map(|earlier| {
+            let of = |lane| BackwardDifference::new(of(lane).order, time_step_s, earlier);
+            let each: [_; LANES] = std::array::from_fn(of);
+            each.into()
+        });
+        let mut now = Lanes::default();
+        let mut before = Lanes::default();
+        for sample in 0..samples {
+            let mut g = [Lanes::default(); 3];
+            for (lane, [g0, g1, g2]) in maps.iter().enumerate() {
+                g[0].0[lane] = g0.0[sample].0[g0.1];
+                g[1].0[lane] = g1.0[sample].0[g1.1];
+                g[2].0[lane] = g2.0[sample].0[g2.1];
+            }
+            let difference: &BackwardDifference<Lanes> = if sample > 1 { &after } else { &first };
+            let base = difference.base(now, before);
+            let moved = base + difference.weight * output_rates(g, base, difference.weight);
+            (before, now) = (now, if sample == 0 { g[0] } else { moved });
+            for (output, value) in outputs.iter_mut().zip(now.0) {
+                output.push(value);
+            }
+        }
+        outputs
+    }
+}
+
+/// [`output_rate`] of models side by side.
+#[inline(always)]
+fn output_rates(g: [Lanes; 3], base: Lanes, weight: Lanes) -> Lanes {
+    let mut rates = Lanes::default();
+    for lane in 0..LANES {
+        let g = [g[0].0[lane], g[1].0[lane], g[2].0[lane]];
+        rates.0[lane] = output_rate(g, base.0[lane], weight.0[lane]).rate_deg_s;
+    }
+    rates
+}
+
+/// The values of at most [`LANES`] maps over voltages, from rest at the first: the plays move once
 /// for all of them.
-fn map_values(maps: &[&PlayMap], grid: &PreisachGrid, voltages_volt: &[f64]) -> Vec<Vec<f64>> {
+fn map_values(maps: &[&PlayMap], grid: &PreisachGrid, voltages_volt: &[f64]) -> Vec<Lanes> {
     let (Some(first), Some(&start)) = (maps.first(), voltages_volt.first()) else {
-        return vec![Vec::new(); maps.len()];
+        return Vec::new();
     };
     let of = |lane: usize| maps.get(lane).unwrap_or(first);
-    // values of all maps, then their rises
-    let table = NodeTable::<{ 2 * TOGETHER }>::new(grid, |play, knot| {
-        std::array::from_fn(|i| of(i % TOGETHER).value_and_rise(play, knot)[i / TOGETHER])
+    let table = NodeTable::new(grid, |play, knot| {
+        let values = [0, 1].map(|i| Lanes::from_fn(|lane| of(lane).value_and_rise(play, knot)[i]));
+        values.into()
     });
-    let constants: [f64; TOGETHER] = std::array::from_fn(|lane| of(lane).constant);
-    let mut memory = PlayMemory::new(grid, start, StartState::Rest);
-    let mut values = vec![Vec::with_capacity(voltages_volt.len()); maps.len()];
-    for &volt in voltages_volt {
-        memory.apply(grid, volt);
-        let mut sums = constants;
-        for (play, &x) in memory.cells().iter().enumerate() {
-            let (entry, t) = table.at(play, x);
-            let (at, rises) = entry.split_at(TOGETHER);
-            for lane in 0..TOGETHER {
-                sums[lane] += at[lane] + t * rises[lane];
-            }
-        }
-        values.iter_mut().zip(sums).for_each(|(values, sum)| values.push(sum));
-    }
-    values
+    let constants = Lanes::from_fn(|lane| of(lane).constant);
+    let memory = PlayMemory::new(grid, start, StartState::Rest);
+    Arch::new().dispatch(MapValues { grid, table, constants, memory, voltages_volt })
 }
 
-/// Maps that are evaluated at once.
-const TOGETHER: usize = 8;
+/// The sums over the plays at every voltage: a type of its own, as [`March`] is.
+struct MapValues<'a> {
+    grid: &'a PreisachGrid,
+    /// Values of all maps, and their rises.
+    table: NodeTable<(Lanes, Lanes)>,
+    constants: Lanes,
+    memory: PlayMemory,
+    voltages_volt: &'a [f64],
+}
+
+impl WithSimd for MapValues<'_> {
+    type Output = Vec<Lanes>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<Lanes> {
+        let Self { grid, table, constants, mut memory, voltages_volt } = self;
+        let mut values = Vec::with_capacity(voltages_volt.len());
+        for &volt in voltages_volt {
+            memory.apply(grid, volt);
+            let term = |play: usize, x: f64| {
+                let (&(value, rise), t) = table.at(play, x);
+                value + rise * t
+            };
+            let mut sums = constants;
+            let (quads, left) = memory.cells().as_chunks::<4>();
+            // one after the other, as `apply` does, but the sums wait in memory only after four
+            for (quad, &[a, b, c, d]) in quads.iter().enumerate() {
+                let play = 4 * quad;
+                let (a, b) = (term(play, a), term(play + 1, b));
+                let (c, d) = (term(play + 2, c), term(play + 3, d));
+                sums = sums + a + b + c + d;
+            }
+            for (play, &x) in (4 * quads.len()..).zip(left) {
+                sums += term(play, x);
+            }
+            values.push(sums);
+        }
+        values
+    }
+}
 
 /// What a [`DynamicPreisach`] remembers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

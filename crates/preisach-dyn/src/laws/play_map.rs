@@ -1,6 +1,8 @@
 //! Output maps: what each play contributes to an output, and their extremes over all reachable
 //! states.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::check::{check_finite, check_that, largest_above};
 use crate::{PlayMemory, PreisachError, PreisachGrid};
 use serde::{Deserialize, Serialize};
@@ -212,16 +214,16 @@ pub(crate) fn split(x: f64) -> (usize, f64) {
 
 /// Numbers at every knot of every play, laid out for speed: rows of equal length.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct NodeTable<const N: usize> {
+pub(crate) struct NodeTable<E> {
     stride: usize,
-    entries: Vec<[f64; N]>,
+    entries: Vec<E>,
 }
 
-impl<const N: usize> NodeTable<N> {
+impl<E: Clone + Default> NodeTable<E> {
     /// The table of `entry(play, knot)`.
-    pub(crate) fn new(grid: &PreisachGrid, entry: impl Fn(usize, usize) -> [f64; N]) -> Self {
+    pub(crate) fn new(grid: &PreisachGrid, entry: impl Fn(usize, usize) -> E) -> Self {
         let stride = grid.levels() + 1;
-        let mut entries = vec![[0.0; N]; stride * grid.levels()];
+        let mut entries = vec![E::default(); stride * grid.levels()];
         for play in 0..grid.levels() {
             for knot in 0..grid.knots(play) {
                 entries[play * stride + knot] = entry(play, knot);
@@ -231,8 +233,8 @@ impl<const N: usize> NodeTable<N> {
     }
 
     /// The entry of the knot at or below a play state, and the remainder.
-    #[inline]
-    pub(crate) fn at(&self, play: usize, x: f64) -> (&[f64; N], f64) {
+    #[inline(always)]
+    pub(crate) fn at(&self, play: usize, x: f64) -> (&E, f64) {
         let (knot, t) = split(x);
         (&self.entries[play * self.stride + knot], t)
     }

@@ -1,7 +1,11 @@
 //! The static (classical) Preisach actuator, paper equation (2).
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use crate::laws::play_map::NodeTable;
 use crate::{HysteresisLaw, PlayMap, PlayMemory, PreisachError, PreisachGrid, StartState};
+use pulp::{Arch, Simd, WithSimd};
+use rotor_base::{LANES, Lanes};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -21,7 +25,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 pub struct StaticPreisach {
     grid: PreisachGrid,
     map: PlayMap,
-    table: NodeTable<2>,
+    table: NodeTable<[f64; 2]>,
 }
 
 /// The model as it is written to files.
@@ -113,56 +117,74 @@ impl StaticPreisach {
     /// The outputs of models on one grid over the same voltages, from rest at the first: the plays
     /// move once for all of them. Each is that of its own simulation, to the last bit.
     pub(crate) fn side_by_side(models: &[&Self], voltages_volt: &[f64]) -> Vec<Vec<f64>> {
-        models.chunks(TOGETHER).flat_map(|group| Self::group(group, voltages_volt)).collect()
+        models.chunks(LANES).flat_map(|group| Self::group(group, voltages_volt)).collect()
     }
 
-    /// As [`Self::side_by_side`], of at most [`TOGETHER`] models.
+    /// As [`Self::side_by_side`], of at most [`LANES`] models.
     fn group(models: &[&Self], voltages_volt: &[f64]) -> Vec<Vec<f64>> {
         let (Some(first), Some(&start)) = (models.first(), voltages_volt.first()) else {
             return vec![Vec::new(); models.len()];
         };
         let grid = &first.grid;
         let of = |lane: usize| models.get(lane).unwrap_or(first);
-        // values of all models, then rises
-        let table = NodeTable::<{ 2 * TOGETHER }>::new(grid, |play, knot| {
-            std::array::from_fn(|i| {
-                let (&[value, rise], _) = of(i % TOGETHER).table.at(play, knot as f64);
-                if i < TOGETHER { value } else { rise }
-            })
+        let table = NodeTable::new(grid, |play, knot| {
+            let entry = |lane: usize| *of(lane).table.at(play, knot as f64).0;
+            (Lanes::from_fn(|lane| entry(lane)[0]), Lanes::from_fn(|lane| entry(lane)[1]))
         });
-        let constants: [f64; TOGETHER] = std::array::from_fn(|lane| of(lane).map.constant);
-        let mut memory = PlayMemory::new(grid, start, StartState::Rest);
-        let mut outputs: Vec<Vec<f64>> =
-            models.iter().map(|model| vec![model.output_deg(&memory)]).collect();
-        let left = grid.levels() % 4;
-        let quads = grid.levels() - left;
-        for &volt in &voltages_volt[1..] {
+        let constants = Lanes::from_fn(|lane| of(lane).map.constant);
+        let memory = PlayMemory::new(grid, start, StartState::Rest);
+        let starts: Vec<f64> = models.iter().map(|model| model.output_deg(&memory)).collect();
+        let sums = Arch::new().dispatch(Sums { grid, table, constants, memory, voltages_volt });
+        let rest = |lane: usize| sums.iter().map(move |at| at.0[lane]);
+        starts
+            .into_iter()
+            .enumerate()
+            .map(|(lane, start)| std::iter::once(start).chain(rest(lane)).collect())
+            .collect()
+    }
+}
+
+/// Outputs of models side by side after the first voltage: a type of its own, for a closure would be called, not inlined,
+/// by the function that is compiled for the vector unit.
+struct Sums<'a> {
+    grid: &'a PreisachGrid,
+    /// Values of all models, and their rises.
+    table: NodeTable<(Lanes, Lanes)>,
+    constants: Lanes,
+    memory: PlayMemory,
+    voltages_volt: &'a [f64],
+}
+
+impl WithSimd for Sums<'_> {
+    type Output = Vec<Lanes>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
+        let Self { grid, table, constants, mut memory, voltages_volt } = self;
+        let mut outputs = Vec::with_capacity(voltages_volt.len());
+        for &volt in voltages_volt.iter().skip(1) {
             memory.apply(grid, volt);
-            let cells = memory.cells();
+            let (quads, left) = memory.cells().as_chunks::<4>();
             // the order of additions is that of `apply`
-            let mut sums = [[0.0; TOGETHER]; 4];
-            sums[0] = constants;
-            for (i, sum) in sums.iter_mut().enumerate() {
-                let own = (quads + i..quads + left).take(1).chain((i..quads).step_by(4));
-                for play in own {
-                    let (entry, t) = table.at(play, cells[play]);
-                    let (values, rises) = entry.split_at(TOGETHER);
-                    for lane in 0..TOGETHER {
-                        sum[lane] += values[lane] + t * rises[lane];
-                    }
-                }
+            let mut sums = [constants, Lanes::default(), Lanes::default(), Lanes::default()];
+            for (i, &x) in left.iter().enumerate() {
+                let (&(value, rise), t) = table.at(4 * quads.len() + i, x);
+                sums[i] += value + rise * t;
             }
-            for (lane, output) in outputs.iter_mut().enumerate() {
-                let at = |i: usize| sums[i][lane];
-                output.push((at(0) + at(1)) + (at(2) + at(3)));
+            let [mut a, mut b, mut c, mut d] = sums;
+            for (quad, x) in quads.iter().enumerate() {
+                let at = [0, 1, 2, 3].map(|i| table.at(4 * quad + i, x[i]));
+                let [(p, p_t), (q, q_t), (r, r_t), (s, s_t)] = at;
+                a += p.0 + p.1 * p_t;
+                b += q.0 + q.1 * q_t;
+                c += r.0 + r.1 * r_t;
+                d += s.0 + s.1 * s_t;
             }
+            outputs.push((a + b) + (c + d));
         }
         outputs
     }
 }
-
-/// Models that are evaluated at once.
-const TOGETHER: usize = 8;
 
 impl HysteresisLaw for StaticPreisach {
     type Memory = PlayMemory;
