@@ -50,7 +50,8 @@ impl<'a> Drive<'a> {
         self.loads_newton.get(index).copied().unwrap_or_default()
     }
 
-    fn check(&self, model: &ActuatorModel) -> Result<(), PreisachError> {
+    /// Whether a model can follow it.
+    pub(crate) fn check(&self, model: &ActuatorModel) -> Result<(), PreisachError> {
         let (voltages, loads) = (self.voltages_volt.len(), self.loads_newton.len());
         let expected = format!("one for each of {voltages} voltages, or none");
         check_that(loads == 0 || loads == voltages, "number of loads", loads as f64, expected)?;

@@ -83,9 +83,27 @@ impl ActuatorLaw {
     }
 }
 
+/// The outputs of a law over voltages, from rest at the first.
+fn outputs(law: &impl HysteresisLaw, voltages_volt: &[f64], time_step_s: f64) -> Vec<f64> {
+    let Some((&first, later)) = voltages_volt.split_first() else { return Vec::new() };
+    let (mut memory, output_deg) = law.start(first, StartState::Rest);
+    let steps = later.iter().map(|volt| law.step(&mut memory, *volt, time_step_s));
+    std::iter::once(output_deg).chain(steps).collect()
+}
+
 /// [`HysteresisLaw`] of any law, with any memory, from that of each law with its own.
 macro_rules! any_of {
     ($($name:ident),*) => {
+        impl ActuatorLaw {
+            /// The outputs over voltages, from rest at the first: those of a simulation, which is not stopped where it
+            /// diverges.
+            pub(crate) fn outputs(&self, voltages_volt: &[f64], time_step_s: f64) -> Vec<f64> {
+                match self {
+                    $(Self::$name(law) => outputs(law, voltages_volt, time_step_s),)*
+                }
+            }
+        }
+
         impl HysteresisLaw for ActuatorLaw {
             type Memory = LawMemory;
 

@@ -2,7 +2,7 @@
 
 use crate::identify::records::prepared::Prepared;
 use crate::stages::Step;
-use crate::{ActuatorLaw, ActuatorModel};
+use crate::{ActuatorLaw, ActuatorModel, Drive};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -48,7 +48,7 @@ impl Passage {
     pub(crate) fn of(model: ActuatorModel, commands: &[Command]) -> Option<Self> {
         let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
         let free = |c: &Command| {
-            let law = bare.simulate(&c.voltage_volt, c.time_step_s).ok()?.output_deg;
+            let law = behind_the_law(&bare, c)?;
             let mut signals = Vec::with_capacity(model.linkage.len() + 1);
             let last = through(&model, 0, law, c, |signal| signals.push(signal.to_vec()))?;
             signals.push(last);
@@ -123,6 +123,18 @@ impl Passage {
     fn same_front(&self, model: &ActuatorModel) -> bool {
         model.amplifier == self.model.amplifier && model.law == self.model.law
     }
+}
+
+/// The signal behind the law of a model without linkage; none if it diverges.
+fn behind_the_law(bare: &ActuatorModel, command: &Command) -> Option<Vec<f64>> {
+    let Command { voltage_volt, time_step_s, .. } = command;
+    let drive = Drive::new(voltage_volt, *time_step_s);
+    if !bare.amplifier.is_empty() {
+        return Some(bare.simulate_drive(&drive).ok()?.output_deg);
+    }
+    drive.check(bare).ok()?;
+    let law = bare.law.outputs(voltage_volt, *time_step_s);
+    law.iter().all(|y| y.is_finite()).then_some(law)
 }
 
 /// A signal through the linkage from stage `first` on, `keep` being shown what goes into every stage;
