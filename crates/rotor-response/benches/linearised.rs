@@ -19,6 +19,10 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// That of `hhc`.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const BUDGET: f64 = 0.2;
 
 fn solver(section_model: AttachedFlowModel) -> Result<RotorSolver, ResponseError> {

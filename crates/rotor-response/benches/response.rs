@@ -18,6 +18,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+/// That of `hhc`.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const BUDGET_S: f64 = 0.05;
 const RESIDUAL_BUDGET_S: f64 = 0.8e-3;
 

@@ -12,6 +12,10 @@ use sim_driver::run::run_case;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
+/// That of `hhc`.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn whole_study(inflow: InflowChoice) -> Result<f64, SimError> {
     let mut loaded = shipped_case(CONTROLLERS_CASE)?;
     loaded.case.inflow.model = inflow;

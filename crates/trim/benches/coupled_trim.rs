@@ -12,6 +12,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use trim::{TrimError, TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
 
+/// That of `hhc`.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const BUDGET_S: f64 = 0.08;
 const MU: f64 = 0.3;
 

@@ -14,6 +14,10 @@ use trim::{
     trim_in_free_wake,
 };
 
+/// That of `hhc`.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 const BUDGET_S: f64 = 0.4;
 const MU: f64 = 0.3;
 

@@ -83,7 +83,8 @@ pub(crate) fn fit(
     for (n, h) in result.series.harmonics.iter_mut().enumerate() {
         *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
     }
-    let left: f64 = range.clone().map(|i| (values[i] - result.value_and_rate(i).0).powi(2)).sum();
+    let fitted = |i: usize| result.series.value(result.phase_rad(i));
+    let left: f64 = range.clone().map(|i| (values[i] - fitted(i)).powi(2)).sum();
     let freedom = (range.len() - unknowns).max(1);
     result.noise = (left / freedom as f64).sqrt();
     Ok(result)
