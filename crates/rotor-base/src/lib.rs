@@ -1,4 +1,4 @@
-//! Azimuth grids, harmonics, quadrature, frames and nondimensional groups shared by every crate of
+//! Azimuth grids, harmonics, quadrature, frames, nondimensional groups and numbers side by side, shared by every crate of
 //! rotor-hhc.
 //!
 //! This is floor 0 of the house: it knows no blade, no actuator and no file.

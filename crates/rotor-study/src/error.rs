@@ -1,7 +1,7 @@
 //! What can go wrong while a study runs, with the field of the case that is at fault.
 
 use crate::flaps::PlantError;
-use hhc_control::RunError;
+use hhc_control::{ControlError, RunError};
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
 use rotor_response::ResponseError;
@@ -137,6 +137,12 @@ impl StudyError {
             }
             other => other.to_string(),
         }
+    }
+
+    /// Whether no control moves a weighted load: flaps without effect, or weights of the loads they move that are zero.
+    pub fn is_powerless(&self) -> bool {
+        let Self::Control { source, .. } = self else { return false };
+        matches!(**source, RunError::Control(ControlError::NoAuthority))
     }
 
     /// Whether a start from a nearby flight may mend a trim: it lost its way, and nothing said that there is none.

@@ -81,18 +81,28 @@ pub fn run_trimmed(
     let stability = trimmed.stability().map_err(|source| at("rotor", source))?;
     let stability = StabilityLine::from(&stability);
     let unstable = || stability.warnings(trimmed.trim().flight.advance_ratio);
+    let mut powerless = None;
     // without a converged trim nothing is controlled
     let (studies, forecasts) = if trimmed.wake_diverged() {
         (Vec::new(), Vec::new())
     } else {
-        let studies = control_all(&loaded.case, &trimmed, &drives, &|| progress.step())
-            .map_err(|error| failed(error).in_doubt(unstable()))?;
-        (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?)
+        match control_all(&loaded.case, &trimmed, &drives, &|| progress.step()) {
+            Ok(studies) => {
+                (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?)
+            }
+            // the baseline can be had all the same
+            Err(error) if error.is_powerless() => {
+                powerless = Some(format!("{error}. The baseline is given without control"));
+                (Vec::new(), Vec::new())
+            }
+            Err(error) => return Err(failed(error).in_doubt(unstable())),
+        }
     };
     let blade_loads = trimmed
         .station_loads(&loaded.case.load_stations_r())
         .map_err(|source| at("response.load_stations_r", source))?;
     let mut warnings = loaded.warnings.clone();
+    warnings.extend(powerless);
     warnings.extend(actuators.warnings.iter().cloned());
     let found = trimmed.trim();
     let (theta0_rad, most) = (found.controls.theta0_rad, trimmed.largest_section_lift());

@@ -68,6 +68,31 @@ fn mean_loads_and_power_are_in_every_result() {
     );
 }
 
+/// Flaps that neither lift nor weigh move no load: the baseline is given with a warning, and is that of a run that asks
+/// for no control.
+#[test]
+fn flaps_without_effect_leave_a_baseline_with_a_warning() {
+    let place = Place::new();
+    let flap = "(start_r: 0.7, end_r: 0.75, mass_fraction: 0,
+                 effectiveness: (lift: 0, moment: 0, hinge: 0))";
+    let title = "title: \"quick\",";
+    let without = QUICK_CASE.replace(title, &format!("{title} flaps: [{flap}],"));
+    assert!(without.contains(flap));
+    place.write("without.ron", &without);
+    let ran = place.hhc(&["run", "without.ron", "--format", "json"]);
+    assert!(
+        ran.err.contains("no control moves a weighted load")
+            && ran.err.contains("The baseline is given without control"),
+        "{}",
+        ran.err
+    );
+    let found = ran.json();
+    place.write("asked.ron", &without.replace("harmonics: [[3]]", "harmonics: []"));
+    let asked = place.hhc(&["run", "asked.ron", "--format", "json"]).json();
+    assert_eq!(found["baseline"], asked["baseline"]);
+    assert_eq!(found["control"], asked["control"]);
+}
+
 /// A blade soft in torsion with its mass behind the elastic axis diverges in pitch; the same with its mass on
 /// the axis does not.
 #[test]
