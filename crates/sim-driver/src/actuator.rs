@@ -66,7 +66,7 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
         ActuatorSource::Bench(folder) => {
             let data = read_bench(folder)?;
             actuators.warnings.extend(data.warnings.iter().map(Problem::to_string));
-            let found = identify_bench(&data, &Settings::default())?;
+            let found = identify_bench(&data, &Settings::default(), None)?;
             let stored = found.stored();
             let place = |_: &str| dataset_place(&data.folder);
             actuators.warnings.extend(actuator_warnings(&stored, place));

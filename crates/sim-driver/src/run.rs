@@ -87,9 +87,7 @@ pub fn run_trimmed(
         (Vec::new(), Vec::new())
     } else {
         match control_all(&loaded.case, &trimmed, &drives, &|| progress.step()) {
-            Ok(studies) => {
-                (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?)
-            }
+            Ok(studies) => (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?),
             // the baseline can be had all the same
             Err(error) if error.is_powerless() => {
                 powerless = Some(format!("{error}. The baseline is given without control"));

@@ -12,9 +12,6 @@ use crate::progress::Progress;
 use crate::stored_actuator::{StoredActuator, read_actuator, write_actuator};
 use preisach_dyn::identify::Settings;
 
-/// Steps of the progress that the identification itself counts as.
-const IDENTIFICATION: usize = 5;
-
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let base = match &args.start {
         Some(path) => read_actuator(&Source::read(path)?)?.settings,
@@ -24,7 +21,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     refuse_inputs(args.start.as_deref(), Some(&args.output))?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
-    let progress = Progress::new(IDENTIFICATION + MODELS_COMPARED);
+    let progress = Progress::new(MODELS_COMPARED);
     progress.begin(0, &format!("identifying from {} runs", data.run_count()));
     let written = Some(args.output.display().to_string());
     let (stored, text, figures) = match &data {
@@ -36,10 +33,12 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
             (found.stored(), found.summary(written).render(args.format.form())?, figures)
         }
         DataSet::Bench(bench) => {
-            record_files(&compared(identify_bench(bench, &base), args, &progress)?, written, args)?
+            let found = identify_bench(bench, &base, Some(&|| progress.step()));
+            record_files(&picked(found, args, &progress)?, written, args)?
         }
         DataSet::Loops(loops) => {
-            record_files(&compared(identify_loops(loops, &base), args, &progress)?, written, args)?
+            let found = identify_loops(loops, &base, Some(&|| progress.step()));
+            record_files(&picked(found, args, &progress)?, written, args)?
         }
     };
     write_actuator(&stored, &args.output)?;
@@ -61,18 +60,14 @@ fn record_files(
     Ok((found.stored(), found.summary(written).render(args.format.form())?, figures))
 }
 
-/// The identification with the table of all models and the one that is wanted in place.
-fn compared(
+/// The identification with the model that is wanted in place.
+fn picked(
     found: Result<BenchIdentification, SimError>,
     args: &IdentifyArgs,
     progress: &Progress,
 ) -> Result<BenchIdentification, SimError> {
-    progress.begin(IDENTIFICATION, "comparing all models");
-    let found = found.and_then(|mut found| {
-        found.compare(&|| progress.step())?;
-        found.pick(args.model)?;
-        Ok(found)
-    });
     progress.finish();
-    found
+    let mut found = found?;
+    found.pick(args.model)?;
+    Ok(found)
 }

@@ -109,6 +109,10 @@ pub struct BenchIdentification {
 /// Models that a comparison fits at most: the families, and the orders of the one chosen.
 pub const MODELS_COMPARED: usize = 15;
 
+/// Whether all families of models are fitted to the same records, side by side with the identification, and their table
+/// kept: then what is called after each of [`MODELS_COMPARED`].
+pub type Compared<'a> = Option<&'a (dyn Fn() + Sync)>;
+
 /// Identifies an actuator from a bench.
 ///
 /// `base` gives what the data set does not: levels, form, split rule. Range and gain are the data
@@ -117,14 +121,18 @@ pub const MODELS_COMPARED: usize = 15;
 ///
 /// # Errors
 /// [`SimError::Actuator`] at the place of the data set.
-pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentification, SimError> {
+pub fn identify_bench(
+    data: &BenchData,
+    base: &Settings,
+    compared: Compared<'_>,
+) -> Result<BenchIdentification, SimError> {
     let (deg_per_um, gain_rule) = gain(data, base);
     let of = [&data.title, &data.folder, &data.content_hash];
     let heading = DataHeading { gain_rule: Some(gain_rule), ..DataHeading::new(of, &data.runs) };
     let (low, high) = data.command_range_volt;
     let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
     let settings = Settings { range_volt, deg_per_um, ..base.clone() };
-    identified(heading, records(&data.runs, deg_per_um), settings)
+    identified(heading, records(&data.runs, deg_per_um), settings, compared)
 }
 
 /// Identifies a model of a generic loop, in the units of its data.
@@ -135,7 +143,11 @@ pub fn identify_bench(data: &BenchData, base: &Settings) -> Result<BenchIdentifi
 ///
 /// # Errors
 /// [`SimError::Loop`] at the place of the data set.
-pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentification, SimError> {
+pub fn identify_loops(
+    data: &LoopData,
+    base: &Settings,
+    compared: Compared<'_>,
+) -> Result<BenchIdentification, SimError> {
     let [input, output] = data.channels.both().map(Channel::label);
     let heading = DataHeading {
         channels: Some(StoredChannels { input, output }),
@@ -146,7 +158,7 @@ pub fn identify_loops(data: &LoopData, base: &Settings) -> Result<BenchIdentific
     let range_volt = VoltageRange::new(low, high).map_err(|source| heading.failed(source))?;
     let zero = FlapZero::AsRecorded;
     let settings = Settings { range_volt, deg_per_um: 1.0, zero, ..base.clone() };
-    identified(heading, records(&data.runs, 1.0), settings)
+    identified(heading, records(&data.runs, 1.0), settings, compared)
 }
 
 /// The runs as an identification sees them, with a gain from their outputs.
@@ -179,8 +191,14 @@ fn identified(
     heading: DataHeading,
     records: Vec<BenchRecord>,
     settings: Settings,
+    compared: Compared<'_>,
 ) -> Result<BenchIdentification, SimError> {
-    let identification = identify(&records, &settings).map_err(|e| heading.failed(e))?;
+    let table = || {
+        let candidates = Candidates::default();
+        compared.map(|done| compare_models(&records, &settings, &candidates, done)).transpose()
+    };
+    let (identification, comparison) = rayon::join(|| identify(&records, &settings), table);
+    let identification = identification.map_err(|e| heading.failed(e))?;
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
@@ -192,7 +210,7 @@ fn identified(
     let model = identification.dynamic.clone();
     let fits = judge::judged(&heading, &records, &identification, &model)?;
     let pick = Pick::first_fit(&settings);
-    let comparison = None;
+    let comparison = comparison.map_err(|source| heading.failed(source))?;
     Ok(BenchIdentification {
         heading,
         identification,
@@ -226,17 +244,6 @@ pub(crate) fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
 }
 
 impl BenchIdentification {
-    /// Fits all families of models to the same records and keeps the table; `done` is called after each of
-    /// [`MODELS_COMPARED`].
-    ///
-    /// # Errors
-    /// [`SimError::Actuator`] or [`SimError::Loop`] at the place of the data set.
-    pub fn compare(&mut self, done: &(dyn Fn() + Sync)) -> Result<(), SimError> {
-        let table = compare_models(&self.records, &self.settings, &Candidates::default(), done);
-        self.comparison = Some(table.map_err(|source| self.heading.failed(source))?);
-        Ok(())
-    }
-
     /// The actuator file of this identification.
     pub fn stored(&self) -> StoredActuator {
         StoredActuator {

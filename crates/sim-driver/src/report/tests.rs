@@ -16,7 +16,7 @@ use rotor_study::{HubLoads, Sensitivity, SensitivityRecord};
 fn example() -> StoredResult {
     let data = read_bench(&shipped(SHIPPED_BENCH)).unwrap();
     let settings = Settings { refinement_patience: 0, rounds: 1, ..Settings::default() };
-    let found = identify_bench(&data, &settings).unwrap();
+    let found = identify_bench(&data, &settings, None).unwrap();
     let series = |mean: f64, amplitude: f64, phase: f64| {
         let mut series = HarmonicSeries::zero(3);
         series.mean = mean;

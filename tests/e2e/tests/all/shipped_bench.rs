@@ -60,7 +60,7 @@ fn extrapolation_is_warned_of() {
 #[test]
 fn a_program_that_stops_near_its_minimum_is_no_error() {
     let made = set(&Request::new(Family::Duhem, 17_051, Deal::Nulls));
-    let found = identify_bench(&bench(&made.reference), &Settings::default()).unwrap();
+    let found = identify_bench(&bench(&made.reference), &Settings::default(), None).unwrap();
     let trained = found.stored().runs;
     let trained = trained.iter().filter(|fit| fit.use_as == RecordUse::Train);
     let worst = trained.map(|fit| fit.nrmse_percent).fold(0.0, f64::max);

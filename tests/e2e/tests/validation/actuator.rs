@@ -44,7 +44,7 @@ pub(crate) const ROWS: &[Check] = &[
 /// The shipped records, identified once for all checks.
 static IDENTIFIED: LazyLock<Result<Identification, Failure>> = LazyLock::new(|| {
     let data = read_bench(&shipped(SHIPPED_BENCH))?;
-    Ok(identify_bench(&data, &Settings::default())?.identification)
+    Ok(identify_bench(&data, &Settings::default(), None)?.identification)
 });
 
 pub(crate) fn identified() -> Result<&'static Identification, Failure> {
