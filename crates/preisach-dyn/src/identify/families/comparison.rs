@@ -146,7 +146,8 @@ pub fn compare_models(
     candidates: &Candidates,
     done: &(dyn Fn() + Sync),
 ) -> Result<ModelComparison, PreisachError> {
-    let contest = Contest::new(records, settings)?;
+    let bench = Bench::new(records, settings)?;
+    let contest = Contest::new(&bench, settings)?;
     let own = Order::of(settings);
     let (mut rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
         .families
@@ -181,7 +182,7 @@ pub fn compare_models(
         let asked_for = tried.iter().position(|order| *order == own);
         chosen_order = if by_error { best(&orders, 1.0) } else { asked_for.unwrap_or(0) };
     }
-    let Contest { bench, zero_deg, summary, .. } = contest;
+    let Contest { zero_deg, summary, .. } = contest;
     for row in rows.iter_mut().chain(&mut orders) {
         if let Ok(fitted) = &mut row.fitted {
             fitted.model = fitted.model.clone().shifted(-zero_deg);
@@ -224,7 +225,9 @@ fn best(rows: &[ModelRow], within: f64) -> usize {
 
 /// Records made ready for all families.
 struct Contest<'a> {
-    bench: Bench<'a>,
+    bench: &'a Bench<'a>,
+    /// With the memory that the settings ask for.
+    prepared: Vec<Prepared<'a>>,
     settings: &'a Settings,
     zero_deg: f64,
     summary: Identifiability,
@@ -232,16 +235,15 @@ struct Contest<'a> {
 }
 
 impl<'a> Contest<'a> {
-    fn new(records: &'a [BenchRecord], settings: &'a Settings) -> Result<Self, PreisachError> {
+    fn new(bench: &'a Bench<'a>, settings: &'a Settings) -> Result<Self, PreisachError> {
         let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
-        let bench = Bench::new(records, settings)?;
         let prepared = bench.prepared(&grid, settings)?;
         let training = Training::of(&prepared, grid, settings)?;
         let (summary, zero_deg) = (bench.summary(&training), zero_deg(&training));
         // one smoothness for all folds, chosen on the training records
         let map = static_fit::as_measured(&training)?;
         let smoothness = validate::smoothness(&training, &map).0;
-        Ok(Self { bench, settings, zero_deg, summary, smoothness })
+        Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness })
     }
 
     /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
@@ -257,8 +259,11 @@ impl<'a> Contest<'a> {
         let settings = Settings { levels, rate_levels, static_smoothness, ..self.settings.clone() };
         settings.check()?;
         let grid = PreisachGrid::new(settings.range_volt, levels)?;
-        let prepared = self.bench.prepared(&grid, &settings)?;
-        let training = Training::of(&prepared, grid, &settings)?;
+        let anew = (order != Order::of(self.settings))
+            .then(|| self.bench.prepared(&grid, &settings))
+            .transpose()?;
+        let prepared = anew.as_ref().unwrap_or(&self.prepared);
+        let training = Training::of(prepared, grid, &settings)?;
         let Training { slow, fast, .. } = &training;
         let fit = |training: &Training, whole: Option<&Fitted>| {
             by_family::fit(family, training, Given { smoothness: self.smoothness, whole })
@@ -293,7 +298,7 @@ impl<'a> Contest<'a> {
         let cross_validation =
             (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
         let fitted = whole.and_then(|Fitted { mut model, parameters }| {
-            model.trained = Some(trained_range(&training, &prepared));
+            model.trained = Some(trained_range(&training, prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
             Ok(FittedModel { model, fits, parameters })

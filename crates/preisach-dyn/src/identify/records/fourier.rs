@@ -2,7 +2,7 @@
 
 use crate::PreisachError;
 use nalgebra::{DMatrix, DVector};
-use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_base::{Harmonic, HarmonicSeries, LANES, Lanes, Number};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -21,6 +21,27 @@ impl FourierFit {
     /// Phase of a sample, rad.
     fn phase_rad(&self, index: usize) -> f64 {
         TAU * (self.cycles_per_sample * index as f64).fract()
+    }
+
+    /// Sine and cosine of the phases of at most [`LANES`] samples.
+    fn unit(&self, samples: Range<usize>) -> [Lanes; 2] {
+        let mut of = [Lanes::default(); 2];
+        for (lane, index) in samples.take(LANES).enumerate() {
+            (of[0].0[lane], of[1].0[lane]) = self.phase_rad(index).sin_cos();
+        }
+        of
+    }
+
+    /// Values at at most [`LANES`] samples.
+    fn values(&self, samples: Range<usize>) -> Lanes {
+        let [sin1, cos1] = self.unit(samples);
+        let (mut s, mut c) = (sin1, cos1);
+        let mut value = Lanes::of(self.series.mean);
+        for h in &self.series.harmonics {
+            value += c * h.cosine + s * h.sine;
+            (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
+        }
+        value
     }
 
     /// Value at a sample, and its time derivative per sample.
@@ -46,16 +67,22 @@ pub(crate) fn fit(
         FourierFit { series: HarmonicSeries::zero(count), cycles_per_sample, noise: 0.0 };
     // sums of cos n phi and sin n phi over the samples: products of two harmonics are made of them
     let mut sums = vec![(0.0, 0.0); unknowns];
-    for index in range.clone() {
-        let (sin1, cos1) = result.phase_rad(index).sin_cos();
-        let (mut s, mut c) = (0.0, 1.0);
+    // some samples side by side: a harmonic waits for the one before it
+    for first in range.clone().step_by(LANES) {
+        let places = first..range.end.min(first + LANES);
+        let samples = &values[places.clone()];
+        let [sin1, cos1] = result.unit(places);
+        let (mut s, mut c) = (Lanes::default(), Lanes::of(1.0));
         for (n, sum) in sums.iter_mut().enumerate() {
-            *sum = (sum.0 + c, sum.1 + s);
-            if n == 0 {
-                right[0] += values[index];
-            } else if n <= count {
-                right[2 * n - 1] += c * values[index];
-                right[2 * n] += s * values[index];
+            for (lane, value) in samples.iter().enumerate() {
+                let (s, c) = (s.0[lane], c.0[lane]);
+                *sum = (sum.0 + c, sum.1 + s);
+                if n == 0 {
+                    right[0] += value;
+                } else if n <= count {
+                    right[2 * n - 1] += c * value;
+                    right[2 * n] += s * value;
+                }
             }
             (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
         }
@@ -83,8 +110,14 @@ pub(crate) fn fit(
     for (n, h) in result.series.harmonics.iter_mut().enumerate() {
         *h = Harmonic { cosine: solution[2 * n + 1], sine: solution[2 * n + 2] };
     }
-    let fitted = |i: usize| result.series.value(result.phase_rad(i));
-    let left: f64 = range.clone().map(|i| (values[i] - fitted(i)).powi(2)).sum();
+    let mut left = 0.0;
+    for first in range.clone().step_by(LANES) {
+        let places = first..range.end.min(first + LANES);
+        let fitted = result.values(places.clone());
+        for (value, fitted) in values[places].iter().zip(fitted.0) {
+            left += (value - fitted).powi(2);
+        }
+    }
     let freedom = (range.len() - unknowns).max(1);
     result.noise = (left / freedom as f64).sqrt();
     Ok(result)
