@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use super::paths::Before;
 use crate::{XtaskError, files};
 
 /// Ticks of a second in the processor times of `/proc`: the same on every Linux.
@@ -35,8 +36,8 @@ pub struct Timing {
     pub bar_s: Option<f64>,
     /// Whether the bar is for processor time.
     pub bar_is_cpu: bool,
-    /// Seconds that it took before the work on speed, as they were noted.
-    pub before_s: Option<&'static str>,
+    /// What it took before the work on speed.
+    pub before: Option<Before>,
     /// Whether it flies a rotor, so that it is made of residuals of a revolution.
     pub is_of_rotor: bool,
     /// Whether it is timed on two threads alone, and left out where there is no time.
@@ -50,7 +51,7 @@ pub const WAKE: Timing = Timing {
     after: None,
     bar_s: None,
     bar_is_cpu: false,
-    before_s: None,
+    before: None,
     is_of_rotor: true,
     slow: false,
 };
@@ -60,7 +61,7 @@ pub const CASE: Timing = Timing {
     name: "case with 3 harmonics x 3 actuators in the free wake",
     arguments: "run fixtures/cases/paper_mu030.ron --inflow free",
     bar_s: Some(5.0),
-    before_s: Some("26"),
+    before: Some(Before::took(26.0, 26.0)),
     ..WAKE
 };
 
@@ -69,7 +70,7 @@ pub const BARE: Timing = Timing {
     name: "the paper's study, bare `hhc`",
     arguments: "",
     bar_s: Some(15.0),
-    before_s: Some("41, its table of assumptions in Drees's inflow"),
+    before: Some(Before { range_s: [41.0; 2], otherwise: "its table in Drees's inflow" }),
     ..WAKE
 };
 
@@ -82,7 +83,7 @@ pub const TIMINGS: [Timing; 6] = [
         arguments: "run fixtures/cases/paper_mu030.ron --inflow free --mu 0.15,0.20,0.25,0.30,0.35",
         bar_s: Some(40.0),
         bar_is_cpu: true,
-        before_s: Some("344"),
+        before: Some(Before::took(344.0, 344.0)),
         slow: true,
         ..WAKE
     },
@@ -91,7 +92,7 @@ pub const TIMINGS: [Timing; 6] = [
         name: "identification of the shipped bench set",
         arguments: "identify fixtures/bench/apa500l_synthetic -o a.ron",
         bar_s: Some(6.0),
-        before_s: Some("14 to 20"),
+        before: Some(Before::took(14.0, 20.0)),
         is_of_rotor: false,
         ..WAKE
     },

@@ -40,6 +40,34 @@ pub enum Work {
     Composed,
 }
 
+/// What something took before the work on speed, as it was noted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Before {
+    /// From and to, s.
+    pub range_s: [f64; 2],
+    /// What was otherwise; empty if nothing was.
+    pub otherwise: &'static str,
+}
+
+impl Before {
+    /// What took so many seconds.
+    pub const fn took(least_s: f64, most_s: f64) -> Self {
+        Self { range_s: [least_s, most_s], otherwise: "" }
+    }
+
+    /// In words, as a multiple of what it takes now.
+    pub fn over(&self, now_s: f64, words: impl Fn(f64) -> String) -> String {
+        let [least_s, most_s] = self.range_s;
+        let range =
+            |from: String, to: String| if from == to { from } else { format!("{from} to {to}") };
+        let times = |before_s: f64| format!("{:.1}", before_s / now_s);
+        let took = range(words(least_s), words(most_s));
+        let times = range(times(least_s), times(most_s));
+        let otherwise = if self.otherwise.is_empty() { "" } else { ", " };
+        format!("{took}{otherwise}{}: {times} times", self.otherwise)
+    }
+}
+
 /// A path that is measured by a bench.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HotPath {
@@ -53,8 +81,8 @@ pub struct HotPath {
     pub bar: Bar,
     /// Its arithmetic.
     pub work: Work,
-    /// What it took before the work on speed, as it was noted.
-    pub before: Option<&'static str>,
+    /// What it took before the work on speed.
+    pub before: Option<Before>,
 }
 
 /// Target and ids of the limits of the processor.
@@ -123,7 +151,7 @@ pub const PATHS: [HotPath; 13] = [
         Bar::Seconds(0.8e-3),
         Work::Revolution,
     )
-    .before("2.2 to 2.5 ms"),
+    .before(2.2e-3, 2.5e-3),
     path(
         "sweep of the free wake, 24 azimuths, 4 turns",
         ("sweep", "sweep"),
@@ -154,7 +182,7 @@ pub const PATHS: [HotPath; 13] = [
         Bar::Seconds(0.08),
         Work::Composed,
     )
-    .before("0.35 s"),
+    .before(0.35, 0.35),
     path(
         "trim in the free wake, one core",
         ("free_wake_trim", "trim in the free wake/1"),
@@ -167,7 +195,7 @@ pub const PATHS: [HotPath; 13] = [
         Bar::Seconds(0.4),
         Work::Composed,
     )
-    .before("1.7 s"),
+    .before(1.7, 1.7),
 ];
 
 /// A path of which nothing was noted before.
@@ -182,8 +210,8 @@ const fn path(
 
 impl HotPath {
     /// The same with what it took before.
-    const fn before(self, noted: &'static str) -> Self {
-        Self { before: Some(noted), ..self }
+    const fn before(self, least_s: f64, most_s: f64) -> Self {
+        Self { before: Some(Before::took(least_s, most_s)), ..self }
     }
 }
 

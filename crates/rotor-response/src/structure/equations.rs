@@ -321,9 +321,9 @@ fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]
     }
 }
 
-/// What one station does at one azimuth, or at several side by side, `Full` or `Linear`; its motion stands in a lane or a
-/// block of lanes, `second` is what the integrals
-/// along the blade give there: rate of the foreshortening and Coriolis tension.
+/// What one station does at one azimuth, or at several side by side, `Full` or `Linear`. Its motion stands in a lane or a
+/// block of lanes; the last argument is what the integrals along the blade give there: rate of the foreshortening and
+/// Coriolis tension.
 #[inline(always)]
 fn station_force<T: Number>(
     blade: &ResponseBlade,
