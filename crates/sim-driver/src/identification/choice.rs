@@ -61,7 +61,7 @@ impl Pick {
 
 impl BenchIdentification {
     /// Takes a model of the comparison in the place of the dynamic Preisach model and judges it.
-    /// Nothing happens before [`Self::compare`].
+    /// Nothing happens without a [`comparison`](Self::comparison).
     ///
     /// # Errors
     /// [`SimError::Data`] if the model asked for could not be fitted, with the reason and the
