@@ -125,14 +125,7 @@ impl HarmonicSeries {
 
     /// Value at an azimuth.
     pub fn value(&self, azimuth_rad: f64) -> f64 {
-        let (sin1, cos1) = azimuth_rad.sin_cos();
-        let (mut sin_n, mut cos_n) = (sin1, cos1);
-        let mut value = self.mean;
-        for h in &self.harmonics {
-            value += h.cosine * cos_n + h.sine * sin_n;
-            (cos_n, sin_n) = (cos_n * cos1 - sin_n * sin1, sin_n * cos1 + cos_n * sin1);
-        }
-        value
+        self.value_and_rates(azimuth_rad)[0]
     }
 
     /// Value, first and second derivative with respect to azimuth.

@@ -347,7 +347,10 @@ impl<T: Number> PromptCoefficients<T> {
     /// Output `o` of apparent mass.
     #[inline(always)]
     pub(crate) fn apparent(&self, o: usize, flow: &SectionFlow<T>) -> T {
-        self.rate.map_or(T::default(), |rate| dot(&rate[o], &flow.input_rate))
+        match &self.rate {
+            Some(rate) => dot(&rate[o], &flow.input_rate),
+            None => T::default(),
+        }
     }
 }
 
@@ -400,14 +403,11 @@ pub(crate) fn section_loads<T: Number>(
         dot(&moment, &flow.input) + lag[1],
         dot(&hinge, &flow.input) + lag[2],
     ];
-    let apparent = match coefficients.rate {
-        Some([lift, moment, hinge]) => [
-            dot(&lift, &flow.input_rate),
-            dot(&moment, &flow.input_rate),
-            dot(&hinge, &flow.input_rate),
-        ],
-        None => [T::default(); 3],
-    };
+    let apparent = [
+        coefficients.apparent(0, flow),
+        coefficients.apparent(1, flow),
+        coefficients.apparent(2, flow),
+    ];
     let loads = loads_of_outputs(&stream, circulating, apparent);
     let half = 0.5 * scales.density_chord;
     SectionLoads {

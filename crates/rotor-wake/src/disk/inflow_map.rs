@@ -21,8 +21,8 @@ pub struct InflowMap {
 
 impl PartialEq for InflowMap {
     fn eq(&self, other: &Self) -> bool {
-        let of = |map: &Self| (map.stations.clone(), map.widths.clone(), map.values.clone());
-        of(self) == of(other)
+        let own = (&self.stations, &self.widths, &self.values);
+        own == (&other.stations, &other.widths, &other.values)
     }
 }
 
