@@ -412,21 +412,17 @@ impl WithSimd for MapValues<'_> {
         let mut values = Vec::with_capacity(voltages_volt.len());
         for &volt in voltages_volt {
             memory.apply(grid, volt);
-            let term = |play: usize, x: f64| {
-                let (&(value, rise), t) = table.at(play, x);
-                value + rise * t
-            };
             let mut sums = constants;
             let (quads, left) = memory.cells().as_chunks::<4>();
             // one after the other, as `apply` does, but the sums wait in memory only after four
             for (quad, &[a, b, c, d]) in quads.iter().enumerate() {
                 let play = 4 * quad;
-                let (a, b) = (term(play, a), term(play + 1, b));
-                let (c, d) = (term(play + 2, c), term(play + 3, d));
+                let (a, b) = (table.values(play, a), table.values(play + 1, b));
+                let (c, d) = (table.values(play + 2, c), table.values(play + 3, d));
                 sums = sums + a + b + c + d;
             }
             for (play, &x) in (4 * quads.len()..).zip(left) {
-                sums += term(play, x);
+                sums += table.values(play, x);
             }
             values.push(sums);
         }

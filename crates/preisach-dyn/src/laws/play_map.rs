@@ -5,6 +5,7 @@
 
 use crate::check::{check_finite, check_that, largest_above};
 use crate::{PlayMemory, PreisachError, PreisachGrid};
+use rotor_base::Lanes;
 use serde::{Deserialize, Serialize};
 
 /// A function of the memory, `G = constant + sum_j g_j(w_j)`, every `g_j` continuous and piecewise
@@ -237,6 +238,15 @@ impl<E: Clone + Default> NodeTable<E> {
     pub(crate) fn at(&self, play: usize, x: f64) -> (&E, f64) {
         let (knot, t) = split(x);
         (&self.entries[play * self.stride + knot], t)
+    }
+}
+
+impl NodeTable<(Lanes, Lanes)> {
+    /// What a play in a state adds to several maps, of whose values and rises the table is.
+    #[inline(always)]
+    pub(crate) fn values(&self, play: usize, x: f64) -> Lanes {
+        let (&(value, rise), t) = self.at(play, x);
+        value + rise * t
     }
 }
 

@@ -168,17 +168,15 @@ impl WithSimd for Sums<'_> {
             // the order of additions is that of `apply`
             let mut sums = [constants, Lanes::default(), Lanes::default(), Lanes::default()];
             for (i, &x) in left.iter().enumerate() {
-                let (&(value, rise), t) = table.at(4 * quads.len() + i, x);
-                sums[i] += value + rise * t;
+                sums[i] += table.values(4 * quads.len() + i, x);
             }
             let [mut a, mut b, mut c, mut d] = sums;
             for (quad, x) in quads.iter().enumerate() {
-                let at = [0, 1, 2, 3].map(|i| table.at(4 * quad + i, x[i]));
-                let [(p, p_t), (q, q_t), (r, r_t), (s, s_t)] = at;
-                a += p.0 + p.1 * p_t;
-                b += q.0 + q.1 * q_t;
-                c += r.0 + r.1 * r_t;
-                d += s.0 + s.1 * s_t;
+                let play = 4 * quad;
+                a += table.values(play, x[0]);
+                b += table.values(play + 1, x[1]);
+                c += table.values(play + 2, x[2]);
+                d += table.values(play + 3, x[3]);
             }
             outputs.push((a + b) + (c + d));
         }
