@@ -5,7 +5,6 @@ use crate::identify::families::{layered, stop_fit};
 use crate::identify::fit::output_error::{Build, Slopes};
 use crate::identify::fit::preisach::{RateFit, fit_linear};
 use crate::identify::fit::refine::Refined;
-use crate::identify::fit::static_fit;
 use crate::identify::fit::training::Training;
 use crate::identify::{RateSmoothness, Settings};
 use crate::{
@@ -32,10 +31,10 @@ pub(crate) fn fit(
     }
     let mut settings = training.settings.clone();
     settings.rate_smoothness = RateSmoothness::Fixed(given.smoothness);
-    let training = &Training { settings: &settings, ..training.clone() };
+    let training = &training.with_rate(&settings);
     match family {
         Family::StaticPreisach => {
-            let law = StaticPreisach::new(training.grid, static_fit::as_measured(training)?)?;
+            let law = StaticPreisach::new(training.grid, training.measured_map()?)?;
             let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
             Ok(Fitted { model, parameters: Vec::new() })
         }
@@ -45,8 +44,8 @@ pub(crate) fn fit(
                 _ => TimeOrder::Second,
             };
             let settings = Settings { time_order, ..settings.clone() };
-            let training = Training { settings: &settings, ..training.clone() };
-            let map = static_fit::as_measured(&training)?;
+            let training = training.with_rate(&settings);
+            let map = training.measured_map()?;
             let rate = RateFit::new(&training, map, given.uncertainty())?;
             let Refined { law, parameters, .. } = rate.refined;
             Ok(Fitted { model: settings.actuator_of(law), parameters })

@@ -6,14 +6,13 @@ use crate::identify::fit::output_error::Estimate;
 use crate::identify::fit::preisach::{trained_range, zero_deg};
 use crate::identify::fit::roles::Bench;
 use crate::identify::fit::training::Training;
-use crate::identify::fit::{compare, static_fit, validate};
+use crate::identify::fit::{compare, validate};
 use crate::identify::records::prepared::Prepared;
 use crate::identify::{BenchRecord, Identifiability, RecordFit, RecordUse, Settings};
 use crate::{ActuatorModel, PreisachError, PreisachGrid};
 use rayon::prelude::*;
 use rotor_base::mean_square;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// A simpler family is preferred if its error is at most this much larger.
 const WITHIN: f64 = 1.03;
@@ -241,7 +240,7 @@ impl<'a> Contest<'a> {
         let training = Training::of(&prepared, grid, settings)?;
         let (summary, zero_deg) = (bench.summary(&training), zero_deg(&training));
         // one smoothness for all folds, chosen on the training records
-        let map = static_fit::as_measured(&training)?;
+        let map = training.measured_map()?;
         let smoothness = validate::smoothness(&training, &map).0;
         Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness })
     }
@@ -272,11 +271,7 @@ impl<'a> Contest<'a> {
         // places in the slow and the fast records, one after another
         let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
             let all = training.all();
-            let part = |places: Range<usize>| {
-                places.filter(|place| !fold.contains(place)).map(|place| all[place]).collect()
-            };
-            let (slow, fast) = (part(0..slow.len()), part(slow.len()..all.len()));
-            let model = fit(&Training { slow, fast, ..training.clone() }, Some(whole))?.model;
+            let model = fit(&training.without(fold), Some(whole))?.model;
             let tested = all.iter().enumerate().filter(|(place, _)| fold.contains(place));
             let errors = tested.map(|(_, r)| Ok(compare::training_nrmse(&model, r)?.powi(2)));
             Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)

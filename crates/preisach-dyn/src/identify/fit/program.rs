@@ -53,6 +53,13 @@ impl LeastSquaresProgram {
         }
     }
 
+    /// Gives a row that was added with target zero its target.
+    pub(crate) fn aim(&mut self, row: &[(usize, f64)], target: f64, weight: f64) {
+        for &(column, a) in row {
+            self.right[column] += weight * a * target;
+        }
+    }
+
     /// Numbers kept: the normal equations.
     pub(crate) fn kept_numbers(&self) -> usize {
         self.normal.len() + self.right.len()

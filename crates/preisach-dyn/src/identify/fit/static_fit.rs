@@ -2,6 +2,7 @@
 
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
 use crate::identify::fit::training::Training;
+use crate::identify::records::prepared::Prepared;
 use crate::identify::records::record::spread;
 use crate::laws::play_map::split;
 use crate::{PlayMap, PreisachError, PreisachGrid};
@@ -21,19 +22,39 @@ use crate::{PlayMap, PreisachError, PreisachGrid};
 pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayMap, PreisachError> {
     let Training { grid, settings, slow: records, .. } = training;
     let unknowns = Unknowns::new(grid);
-    let mut program = LeastSquaresProgram::new(unknowns.count);
     let spread = targets_deg.iter().map(|targets| spread(targets)).fold(0.0, f64::max);
-    let share = 1.0 / (records.len() as f64 * spread * spread);
+    let mut program = training.normal().clone();
     let mut row = Row::new();
     for (record, targets) in records.iter().zip(targets_deg) {
-        let weight = share / record.samples.len() as f64;
+        let weight = weight(training, record);
         for (index, cells) in record.states() {
             unknowns.hats(cells, &mut row);
-            program.add(&row, targets[index], weight);
+            program.aim(&row, targets[index], weight);
         }
     }
+    program.scale(1.0 / (spread * spread));
     unknowns.regularise(grid, settings.static_smoothness / (spread * spread), &mut program);
     Ok(unknowns.map(grid, &program.solve("static map")?))
+}
+
+/// The samples of the slow records, the weights of all together 1, without targets.
+pub(crate) fn normal(training: &Training) -> LeastSquaresProgram {
+    let unknowns = Unknowns::new(&training.grid);
+    let mut program = LeastSquaresProgram::new(unknowns.count);
+    let mut row = Row::new();
+    for record in &training.slow {
+        let weight = weight(training, record);
+        for (_, cells) in record.states() {
+            unknowns.hats(cells, &mut row);
+            program.add(&row, 0.0, weight);
+        }
+    }
+    program
+}
+
+/// Weight of a sample of a slow record: records weigh alike.
+fn weight(training: &Training, record: &Prepared) -> f64 {
+    1.0 / (training.slow.len() * record.samples.len()) as f64
 }
 
 /// As [`fit`], to the outputs of the records as they stand.
@@ -44,16 +65,7 @@ pub(crate) fn as_measured(training: &Training) -> Result<PlayMap, PreisachError>
 
 /// Numbers of the density that the slow records determine, and how many there are.
 pub(crate) fn determined(training: &Training) -> [usize; 2] {
-    let unknowns = Unknowns::new(&training.grid);
-    let mut program = LeastSquaresProgram::new(unknowns.count);
-    let mut row = Row::new();
-    for record in &training.slow {
-        for (_, cells) in record.states() {
-            unknowns.hats(cells, &mut row);
-            program.add(&row, 0.0, 1.0 / record.samples.len() as f64);
-        }
-    }
-    [program.rank(RANK), unknowns.count]
+    [training.normal().rank(RANK), Unknowns::new(&training.grid).count]
 }
 
 /// Information of a direction below this share of the largest counts as none.

@@ -1,8 +1,11 @@
 //! The records that train.
 
 use crate::identify::Settings;
+use crate::identify::fit::program::LeastSquaresProgram;
+use crate::identify::fit::static_fit;
 use crate::identify::records::prepared::Prepared;
-use crate::{PreisachError, PreisachGrid};
+use crate::{PlayMap, PreisachError, PreisachGrid};
+use std::sync::{Arc, OnceLock};
 
 /// The records that train, with the grid and the settings they are fitted with.
 #[derive(Clone)]
@@ -13,6 +16,17 @@ pub(crate) struct Training<'p> {
     pub(crate) slow: Vec<&'p Prepared<'p>>,
     /// Those that train the rate maps.
     pub(crate) fast: Vec<&'p Prepared<'p>>,
+    slow_once: Arc<SlowOnce>,
+}
+
+/// What is found once of the slow records: it serves every family, and every fold that leaves only fast
+/// records out.
+#[derive(Debug, Default)]
+struct SlowOnce {
+    /// See [`static_fit::normal`].
+    normal: OnceLock<LeastSquaresProgram>,
+    /// The static map of the outputs as measured.
+    map: OnceLock<Result<PlayMap, PreisachError>>,
 }
 
 impl<'p> Training<'p> {
@@ -29,7 +43,37 @@ impl<'p> Training<'p> {
                 remedy: "record a slow major loop and reversal curves, or raise quasi_static_hz",
             });
         }
-        Ok(Self { grid, settings, slow, fast })
+        Ok(Self { grid, settings, slow, fast, slow_once: Arc::default() })
+    }
+
+    /// With settings that differ in what the rate maps are fitted with.
+    pub(crate) fn with_rate<'s>(&self, settings: &'s Settings) -> Training<'s>
+    where
+        'p: 's,
+    {
+        Training { settings, ..self.clone() }
+    }
+
+    /// All but the records at some places of [`Self::all`].
+    pub(crate) fn without(&self, left_out: &[usize]) -> Self {
+        let part = |records: &[&'p Prepared<'p>], first: usize| -> Vec<&'p Prepared<'p>> {
+            let kept = (first..).zip(records).filter(|(place, _)| !left_out.contains(place));
+            kept.map(|(_, record)| *record).collect()
+        };
+        let (slow, fast) = (part(&self.slow, 0), part(&self.fast, self.slow.len()));
+        let is_same = slow.len() == self.slow.len();
+        let slow_once = if is_same { Arc::clone(&self.slow_once) } else { Arc::default() };
+        Self { slow, fast, slow_once, ..*self }
+    }
+
+    /// Least squares of the slow records without targets, see [`static_fit::normal`].
+    pub(crate) fn normal(&self) -> &LeastSquaresProgram {
+        self.slow_once.normal.get_or_init(|| static_fit::normal(self))
+    }
+
+    /// The static map of the slow records as they were measured.
+    pub(crate) fn measured_map(&self) -> Result<PlayMap, PreisachError> {
+        self.slow_once.map.get_or_init(|| static_fit::as_measured(self)).clone()
     }
 
     /// All of them, the slow ones first.
