@@ -39,6 +39,7 @@ pub mod regress;
 pub mod rooms;
 pub mod tidy;
 pub mod validate;
+pub mod wake_control;
 pub mod wake_inflow;
 pub mod wake_refinement;
 pub mod workspace;

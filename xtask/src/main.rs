@@ -12,7 +12,7 @@ use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, ci, dependencies, dynamic_stall, everyday_errors, files,
     hidden_effects, hover_refinement, layers, refinement, regress, rooms, tidy, validate,
-    wake_inflow, wake_refinement, workspace,
+    wake_control, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -193,6 +193,19 @@ fn main() -> ExitCode {
     }
 }
 
+/// What the choices of the free wake do.
+fn wake_tables() -> Result<ExitCode, XtaskError> {
+    let line = |line: &str| say(&mut std::io::stdout(), line);
+    wake_refinement::paper_table(line);
+    line("\n");
+    wake_control::table(line).map_err(|error| XtaskError::Study(error.to_string()))?;
+    line("\n");
+    wake_refinement::table(line);
+    line("\n");
+    hover_refinement::table(line);
+    Ok(ExitCode::SUCCESS)
+}
+
 fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
     match chore {
         Chore::Layers => {
@@ -260,14 +273,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &refinement::table()?);
             Ok(ExitCode::SUCCESS)
         }
-        Chore::WakeRefinement => {
-            wake_refinement::paper_table(|line| say(&mut std::io::stdout(), line));
-            say(&mut std::io::stdout(), "\n");
-            wake_refinement::table(|line| say(&mut std::io::stdout(), line));
-            say(&mut std::io::stdout(), "\n");
-            hover_refinement::table(|line| say(&mut std::io::stdout(), line));
-            Ok(ExitCode::SUCCESS)
-        }
+        Chore::WakeRefinement => wake_tables(),
         Chore::WakeInflow => {
             wake_inflow::tables(|line| say(&mut std::io::stdout(), line))
                 .map_err(|error| XtaskError::Study(error.to_string()))?;

@@ -25,7 +25,7 @@ pub(crate) type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
 const PAPER_CHORD: f64 = 0.055;
 
 /// What is changed, and how, from the defaults of a case.
-const PAPER_ROWS: [(&str, PaperChange); 30] = [
+const PAPER_ROWS: [(&str, PaperChange); 31] = [
     ("none", |_, _| ()),
     ("steps of 30 deg", |s, _| s.wake.azimuths = 12),
     ("steps of 15 deg", |s, _| s.wake.azimuths = 24),
@@ -36,6 +36,7 @@ const PAPER_ROWS: [(&str, PaperChange); 30] = [
     ("5 turns", |s, _| s.wake.turns = 5),
     ("near wake 30 deg", |s, _| s.wake.near_wake_rad = TAU / 12.0),
     ("near wake 90 deg", |s, _| s.wake.near_wake_rad = TAU / 4.0),
+    ("near wake 120 deg", |s, _| s.wake.near_wake_rad = TAU / 3.0),
     ("near wake 180 deg", |s, _| s.wake.near_wake_rad = TAU / 2.0),
     ("near wake 270 deg", |s, _| s.wake.near_wake_rad = 0.75 * TAU),
     ("near wake 720 deg", |s, _| s.wake.near_wake_rad = 2.0 * TAU),

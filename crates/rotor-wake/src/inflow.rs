@@ -113,12 +113,15 @@ impl InducedInflow {
         }
     }
 
-    /// Induced inflow at several radial stations (unit `R`) of one azimuth (rad), positive down: the
-    /// values of [`at`](Self::at) at less cost.
-    pub fn along(&self, azimuth_rad: f64, stations: &[f64]) -> Vec<f64> {
+    /// Induced velocity at several radial stations (unit `R`) of one azimuth (rad): inflow, positive down, and
+    /// the velocity in the plane of the disk across the blade, from the leading to the trailing edge positive,
+    /// which linear models leave out.
+    pub fn velocities(&self, azimuth_rad: f64, stations: &[f64]) -> Vec<[f64; 2]> {
         match self {
-            Self::Linear { .. } => stations.iter().map(|&r| self.at(azimuth_rad, r)).collect(),
-            Self::Map(map) => map.along(azimuth_rad, stations),
+            Self::Linear { .. } => {
+                stations.iter().map(|&r| [self.at(azimuth_rad, r), 0.0]).collect()
+            }
+            Self::Map(map) => map.velocities(azimuth_rad, stations),
         }
     }
 
@@ -131,11 +134,12 @@ impl InducedInflow {
     }
 
     /// The numbers that make up the inflow, in an order that does not change: what a fixed-point
-    /// iteration relaxes. `Linear`: mean, cosine, sine; `Map`: the table, azimuth by azimuth.
+    /// iteration relaxes. `Linear`: mean, cosine, sine; `Map`: the inflow, then the velocity in the plane,
+    /// azimuth by azimuth.
     pub fn parameters(&self) -> Vec<f64> {
         match self {
             Self::Linear { mean, cosine, sine } => vec![*mean, *cosine, *sine],
-            Self::Map(map) => map.values().to_vec(),
+            Self::Map(map) => map.parameters(),
         }
     }
 
@@ -152,7 +156,7 @@ impl InducedInflow {
             (Self::Linear { .. }, _) => {
                 Err(WakeError::ParameterCount { expected: 3, got: parameters.len() })
             }
-            (Self::Map(map), _) => Ok(Self::Map(map.with_values(parameters)?)),
+            (Self::Map(map), _) => Ok(Self::Map(map.with_parameters(parameters)?)),
         }
     }
 }

@@ -103,8 +103,8 @@ pub struct Attitude {
 ///
 /// ```text
 /// forward   T sin a - D - H cos a
-/// up        T cos a cos f + H sin a - Y sin f + L_t cos f - W
-/// starboard Y cos f + T sin f cos a + T_tr + L_t sin f
+/// up        (T cos a + H sin a) cos f - Y sin f + L_t cos f - W
+/// starboard (T cos a + H sin a) sin f + Y cos f + T_tr + L_t sin f
 /// pitch     M_Y + H h - T x_h + L_t (h_t sin a - x_t cos a)   (nose up)
 /// roll      M_X - Y h + T y_h - T_tr h_tr    (about X aft: starboard side up)
 /// yaw       M_Z + Y x_h - H y_h + T_tr x_tr
@@ -134,10 +134,12 @@ pub fn equilibrium(
     let AirframeLoads { drag, tail_lift } = airframe;
     let plane = &vehicle.horizontal_tail;
     let below = vehicle.cg_below_hub;
+    // along the fuselage, normal to the flight path
+    let lifted = thrust * cos_a + h_force * sin_a;
     [
         thrust * sin_a - drag - h_force * cos_a,
-        thrust * cos_a * cos_f + h_force * sin_a - y_force * sin_f + tail_lift * cos_f - weight,
-        y_force * cos_f + thrust * sin_f * cos_a + tail + tail_lift * sin_f,
+        lifted * cos_f - y_force * sin_f + tail_lift * cos_f - weight,
+        lifted * sin_f + y_force * cos_f + tail + tail_lift * sin_f,
         my + h_force * below - thrust * vehicle.hub_aft_of_cg
             + tail_lift * (plane.height * sin_a - plane.arm * cos_a),
         mx - y_force * below + thrust * vehicle.hub_starboard_of_cg
@@ -224,6 +226,30 @@ mod tests {
         assert_abs_diff_eq!(e[4], hub[3] + at_hub[0] + at_tail[0], epsilon = 1e-15);
         assert_abs_diff_eq!(e[3], hub[4] + at_hub[1] + at_tail[1], epsilon = 1e-15);
         assert_abs_diff_eq!(e[5], hub[5] + at_hub[2] + at_tail[2], epsilon = 1e-15);
+    }
+
+    /// The three forces are one rotation of the hub's: what is seen of it keeps its length, and gravity pulls along the
+    /// line that is called up.
+    #[test]
+    fn forces_are_a_rotation_of_those_of_the_hub() {
+        for (tilt, roll) in [(0.0, 0.0), (0.12, -0.05), (-0.4, 0.9), (0.7, -0.6)] {
+            let attitude = Attitude { shaft_tilt_rad: tilt, roll_rad: roll, tail_thrust: 0.0 };
+            let seen = |hub: [f64; 3]| {
+                let loads = [hub[0], hub[1], hub[2], 0.0, 0.0, 0.0];
+                let none = AirframeLoads::default();
+                let e = equilibrium(loads, &attitude, &Vehicle::default(), 0.0, none);
+                nalgebra::Vector3::new(e[0], e[1], e[2])
+            };
+            let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(seen);
+            for (i, a) in axes.iter().enumerate() {
+                for (j, b) in axes.iter().enumerate() {
+                    assert_abs_diff_eq!(a.dot(b), f64::from(u8::from(i == j)), epsilon = 1e-15);
+                }
+            }
+            // as `RotorSolver` has gravity
+            let up = [tilt.sin() * roll.cos(), -roll.sin(), tilt.cos() * roll.cos()];
+            assert_abs_diff_eq!(seen(up)[1], 1.0, epsilon = 1e-15);
+        }
     }
 
     #[test]

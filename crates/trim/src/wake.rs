@@ -158,7 +158,8 @@ fn coupled(
 ) -> Result<WakeTrim, TrimError> {
     let model = solver.rotor().model();
     let (cutout, blades) = (model.root_cutout, model.blades);
-    let panels = WakeRotor::uniform(blades, cutout, settings.panels)?;
+    let ends: Vec<f64> = model.flaps.iter().flat_map(|flap| [flap.start, flap.end]).collect();
+    let panels = WakeRotor::through(blades, cutout, settings.panels, &ends)?;
     settings.wake.validate(blades)?;
     let mut settings = settings.clone();
     if near.is_some() && settings.method == WakeMethod::Relaxed {

@@ -16,7 +16,9 @@ use rayon::prelude::*;
 use rotor_response::{
     Condition, Disturbance, FlapDirection, HubSensitivity, InflowState, ResponseError, RotorSolver,
 };
-use rotor_wake::{CirculationMap, FreeWake, InflowModel, RotorLoading, momentum_inflow};
+use rotor_wake::{
+    CirculationMap, FreeWake, InducedInflow, InflowModel, RotorLoading, momentum_inflow,
+};
 
 /// Updates of the geometry at most.
 const UPDATES: usize = 12;
@@ -54,7 +56,7 @@ impl Moved {
     fn update(&mut self, settings: &WakeTrimSettings) -> Result<(), ResponseError> {
         self.wake.carry_on(settings.method, SWEEPS, &self.circulation)?;
         let induction = self.wake.line_induction(&self.circulation)?;
-        self.inflow = induction.inflow(&self.circulation)?.values().to_vec();
+        self.inflow = InducedInflow::Map(induction.inflow(&self.circulation)?).parameters();
         Ok(())
     }
 }
@@ -164,15 +166,15 @@ pub fn linearised_in_wake(
     let mut term = base.linearised(&along)?;
     let held: Vec<[f64; 12]> = term.iter().map(|change| change.hub.harmonic(blades)).collect();
     let mut found = WakeLinearised { hub: held.clone(), held, updates: 0, change: f64::INFINITY };
+    let still = vec![0.0; about.trim.rotor.inflow.parameters().len()];
     for _ in 0..TERMS {
         let geometry = term
             .par_iter()
             .map(|change| base.geometry(change))
             .collect::<Result<Vec<Option<Geometry>>, ResponseError>>()?;
-        let inflows = geometry.into_iter().zip(&term).map(|(moved, change)| {
-            let count = change.drive.as_ref().map_or(0, |drive| drive.circulation.len());
+        let inflows = geometry.into_iter().map(|moved| {
             found.updates = found.updates.max(moved.as_ref().map_or(0, |moved| moved.updates));
-            Disturbance::Inflow(moved.map_or_else(|| vec![0.0; count], |moved| moved.added))
+            Disturbance::Inflow(moved.map_or_else(|| still.clone(), |moved| moved.added))
         });
         let inflows: Vec<Disturbance> = inflows.collect();
         term = base.linearised(&inflows)?;

@@ -8,7 +8,7 @@ use rotor_wake::{FreeWakeSettings, WakeMethod};
 pub struct WakeTrimSettings {
     /// The wake; its azimuth steps are those of the last stage.
     pub wake: FreeWakeSettings,
-    /// Spanwise panels of equal width between cut-out and tip: no narrower than the distance of the stations of the
+    /// Spanwise panels of nearly equal width between cut-out and tip, with ends on those of the flaps: no narrower than the distance of the stations of the
     /// response, or circulation and inflow at the tip do not answer each other.
     pub panels: usize,
     /// Azimuth steps of the coarser stages before.

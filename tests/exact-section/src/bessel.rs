@@ -67,6 +67,27 @@ pub fn theodorsen_function(k: f64) -> Complex64 {
     h1 / (h1 + Complex64::I * h0)
 }
 
+/// Bound circulation of a flat plate in oscillating incidence over that in steady incidence, `e^(-ik) S(k)`: what the
+/// aerofoil sheds is what is left of it.
+///
+/// ```text
+/// Gamma/Gamma_0 = e^(-ik) / (ik [K0(ik) + K1(ik)])
+/// ```
+/// `k` as in [`theodorsen_function`].
+///
+/// Source: von Karman and Sears, J. Aeronautical Sciences 5 (1938), from Kelvin's theorem and the Kutta condition.
+pub fn bound_circulation(k: f64) -> Complex64 {
+    if k <= 0.0 {
+        return Complex64::ONE;
+    }
+    let e = Entire::at(k);
+    let log = 2.0 / PI * (0.5 * k).ln();
+    let h0 = Complex64::new(e.j0, -(log * e.j0 + e.y0));
+    let h1 = Complex64::new(e.j1, -(log * e.j1 - 2.0 / (PI * k) + e.y1));
+    let sum = -0.5 * PI * (h1 + Complex64::I * h0);
+    Complex64::from_polar(1.0, -k) / (Complex64::I * k * sum)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -25,7 +25,7 @@ mod short_time;
 
 use num_complex::Complex64;
 
-pub use bessel::theodorsen_function;
+pub use bessel::{bound_circulation, theodorsen_function};
 pub use downwash::{start_loads, steady_loads};
 pub use incompressible::incompressible_loads;
 pub use possio::{Possio, TERMS};

@@ -211,7 +211,8 @@ impl BladeElementRotor<'_> {
             let values = (0..start.len()).map(|k| gamma(k, induced(k))).collect();
             let circulation = CirculationMap::new(panels, values)?;
             let wanted = induction.inflow(&circulation)?;
-            let wanted_in_plane = induction.in_plane(&circulation)?;
+            let along = wanted.in_plane_values().unwrap_or_default().to_vec();
+            let wanted_in_plane = InflowMap::new(&self.rotor, along)?;
             let moved = wanted.values().iter().zip(&inflow);
             let moved_in_plane = wanted_in_plane.values().iter().zip(&in_plane);
             let size = moved.chain(moved_in_plane).fold(0.0_f64, |m, (w, l)| m.max((w - l).abs()));

@@ -81,6 +81,8 @@ pub struct LagChannel {
     pub input: [f64; 4],
     /// Weight in each output, in the order of [`Load`].
     pub output: [f64; 3],
+    /// Whether it stands for vorticity that the section sheds, not for pressure waves of a start.
+    pub is_circulatory: bool,
 }
 
 /// A section in attached flow: what every model of this crate comes down to.
@@ -107,6 +109,13 @@ pub struct SectionCoefficients {
 }
 
 impl SectionCoefficients {
+    /// Whether the lift holds pressure waves of a start: `direct` and the lags that are not circulatory. They
+    /// make no circulation and trail no vorticity. Without them all lift but that of `rate` does.
+    pub fn has_waves(&self) -> bool {
+        let lift = Load::Lift.index();
+        self.lags.iter().any(|lag| !lag.is_circulatory && lag.output[lift] != 0.0)
+    }
+
     /// Whether `count` lag states are as many as the section has lags.
     pub(crate) fn check_lags(&self, count: usize) -> Result<(), AeroError> {
         if count == self.lags.len() {

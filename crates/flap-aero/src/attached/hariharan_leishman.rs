@@ -127,6 +127,7 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
             pole: b * beta2,
             input: circulation,
             output: [TAU * compress * a, 0.0, t.circulatory_hinge() * compress * a],
+            is_circulatory: true,
         });
     }
     let modes = if flap.is_none() { &Mode::ALL[..2] } else { &Mode::ALL[..] };
@@ -185,7 +186,8 @@ pub(crate) fn coefficients(mach: Mach, flap: FlapChord) -> SectionCoefficients {
 
 /// A lag of one input into one output.
 fn single(load: Load, mode: Mode, time: f64, weight: f64) -> LagChannel {
-    let mut lag = LagChannel { pole: 1.0 / time, input: [0.0; 4], output: [0.0; 3] };
+    let (input, output) = ([0.0; 4], [0.0; 3]);
+    let mut lag = LagChannel { pole: 1.0 / time, input, output, is_circulatory: false };
     lag.input[mode.index()] = 1.0;
     lag.output[load.index()] = weight;
     lag

@@ -38,6 +38,7 @@ pub(crate) fn coefficients(flap: FlapChord) -> SectionCoefficients {
             pole,
             input: circulation,
             output: [TAU * a, 0.0, t.circulatory_hinge() * a],
+            is_circulatory: true,
         })
         .collect();
     SectionCoefficients {

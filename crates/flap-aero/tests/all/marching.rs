@@ -162,6 +162,7 @@ fn recurrence_error(weighting: Weighting, k: f64, steps_per_cycle: u32) -> f64 {
         pole,
         input: [1.0, 0.0, 0.0, 0.0],
         output: [a, 0.0, 0.0],
+        is_circulatory: true,
     }));
     let march = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&march);

@@ -33,12 +33,12 @@ pub use records::subject::Subject;
 pub use rotor_base::RecordUse;
 
 use crate::{ActuatorLaw, ActuatorModel, PreisachError, PreisachGrid, StaticPreisach};
-use fit::compare;
 use fit::output_error::Uncertainty;
 use fit::preisach::{RateFit, fit_linear, trained_range, zero_deg};
 use fit::refine::Refined;
 use fit::roles::Bench;
 use fit::training::Training;
+use fit::{compare, static_fit};
 use rotor_base::mean_square;
 
 /// What the identification says about one record.
@@ -116,7 +116,7 @@ pub fn identify(
     let trained = Some(trained_range(&training, &prepared));
     let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
     let linear = wrap(ActuatorLaw::Linear(fit_linear(slow)));
-    let g0_deg = training.measured_map()?;
+    let g0_deg = static_fit::as_measured(&training)?;
     let statics = StaticPreisach::new(grid, g0_deg.clone())?;
     let static_only = wrap(ActuatorLaw::StaticPreisach(statics));
     let rate = if fast.is_empty() {

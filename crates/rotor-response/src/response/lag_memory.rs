@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! d(lag part)_o(p) = sum_p' k_o0[p, p'] d(U alpha)(p') + k_o1[p, p'] d(c om)(p')
-//! d(U alpha) = U_T dphi + th dU_T - dU_P          d(c om) = c (dphi' + dw_x)
+//! d(U alpha) = U_T dphi + th dU_T - dU_P          d(c om) = c (dphi' + dw_x + mu cos psi dphi_x)
 //! dU_T, dU_P by differences of the flow (R.8)
 //! dF_z = (1/2) rho c |U_T| d(lift)      dF_y = -(1/2) rho c s U_P d(lift)      dM = (1/2) rho c^2 |U_T| d(moment)
 //! ```
@@ -169,7 +169,7 @@ impl ResponseSystem<'_> {
             }
         };
         let (lag, torsion) = (blade.flap.count(), blade.flap.count() + blade.lag.count());
-        let fields: [(Field, &[Vec<f64>], usize); 8] = [
+        let fields: [(Field, &[Vec<f64>], usize); 9] = [
             (|m| &mut m.w.value, &blade.flap.value, 0),
             (|m| &mut m.w.slope, &blade.flap.slope, 0),
             (|m| &mut m.w.rate, &blade.flap.value, dof),
@@ -177,6 +177,7 @@ impl ResponseSystem<'_> {
             (|m| &mut m.v.slope, &blade.lag.slope, lag),
             (|m| &mut m.v.rate, &blade.lag.value, dof + lag),
             (|m| &mut m.phi.value, &blade.torsion.value, torsion),
+            (|m| &mut m.phi.slope, &blade.torsion.slope, torsion),
             (|m| &mut m.phi.rate, &blade.torsion.value, dof + torsion),
         ];
         for (field, shapes, place) in fields {

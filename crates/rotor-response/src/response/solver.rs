@@ -399,10 +399,11 @@ impl RotorSolver {
                 let pitch = condition.controls.root_pitch(azimuth);
                 let flap: Vec<FlapAngle> =
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
+                let induced = inflow.velocities(azimuth, stations);
                 PointInput {
                     gravity: self.gravity(condition, sin, cos),
                     air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
-                    inflow: inflow.along(azimuth, stations).iter().map(|i| through + i).collect(),
+                    inflow: induced.iter().map(|[down, along]| [through + down, *along]).collect(),
                     flap,
                 }
             })

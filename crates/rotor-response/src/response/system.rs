@@ -26,8 +26,9 @@ const TANGENT_STEP: f64 = 1e-6;
 #[derive(Debug, Clone)]
 pub(crate) struct PointInput<T = f64> {
     pub(crate) air: AirPoint<T>,
-    /// Total inflow at the lifting stations, tip speed, down positive.
-    pub(crate) inflow: Vec<T>,
+    /// Total inflow at the lifting stations, down positive, and induced velocity in the plane of the disk from the
+    /// leading to the trailing edge; tip speed.
+    pub(crate) inflow: Vec<[T; 2]>,
     /// Angle, rate and acceleration of each flap, rad.
     pub(crate) flap: Vec<FlapAngle<T>>,
     /// Acceleration of gravity in the axes of the coned blade, `Omega^2 R`.
@@ -51,7 +52,9 @@ impl PointInput<Lanes> {
                 },
                 reverse_flow: first.air.reverse_flow,
             },
-            inflow: (0..first.inflow.len()).map(|s| gathered(points, |p| p.inflow[s])).collect(),
+            inflow: (0..first.inflow.len())
+                .map(|s| std::array::from_fn(|c| gathered(points, |p| p.inflow[s][c])))
+                .collect(),
             flap: (0..first.flap.len())
                 .map(|k| std::array::from_fn(|c| gathered(points, |p| p.flap[k][c])))
                 .collect(),
@@ -101,8 +104,8 @@ impl ResponseSystem<'_> {
         motion: (&Motion, usize),
     ) -> SectionFlow<T> {
         let delta = self.blade.flap_index[i].map_or([T::default(); 3], |flap| input.flap[flap]);
-        let lambda = input.inflow[i - self.air.first_station];
-        section_flow(self.blade, motion, &input.air, (i, lambda), delta)
+        let inflow = input.inflow[i - self.air.first_station];
+        section_flow(self.blade, motion, &input.air, (i, inflow), delta)
     }
 
     /// Motion of the blade at one point.

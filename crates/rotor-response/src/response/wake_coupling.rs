@@ -2,7 +2,7 @@
 
 use crate::response::revolution::unit_weights;
 use crate::response::wake_loading::{
-    between, circulation, of_harmonics, resolved_harmonics, shares,
+    between, circulation, of_harmonics, panel_means, resolved_harmonics, shares,
 };
 use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::DMatrix;
@@ -61,8 +61,10 @@ impl RotorSolver {
             self.air.lift_slopes().into_par_iter().take(kept).enumerate().map(at_station).collect();
         let panels = wake_rotor.stations();
         let mut blocks = BTreeMap::new();
-        for (from, &r) in panels.iter().enumerate() {
-            for (s, share) in shares(x, r).into_iter().filter(|(s, _)| *s < kept) {
+        let means = panel_means(blade.grid(), x.len(), wake_rotor);
+        for (from, row) in means.row_iter().enumerate() {
+            let of_stations = row.iter().copied().enumerate().take(kept);
+            for (s, share) in of_stations.filter(|(_, share)| *share != 0.0) {
                 for (to, other) in shares(&panels, x[s]) {
                     let block = blocks
                         .entry((from, to))
@@ -178,8 +180,9 @@ mod tests {
         };
         let slope = solver.circulation_slope(&panels, azimuths);
         let rest = of(&even);
-        // the last where the flow is reversed, whose sense is that of a small speed put in its place
-        let places = [(3, 2, 0.01), (10, 11, 0.01), (17, 6, 0.03), (6, 8, 0.01), (18, 1, 0.15)];
+        // the last where the flow turns round, which hardly answers, and whose sense is that of a small speed put in
+        // its place
+        let places = [(3, 2, 0.01), (10, 11, 0.01), (17, 6, 0.03), (6, 8, 0.01), (18, 1, 0.03)];
         for (i, to, bound) in places {
             let mut moved = even.parameters();
             moved[i * panels.panels() + to] += 1e-6;
@@ -196,7 +199,7 @@ mod tests {
                 }
             }
             println!("azimuth {i}, panel {to}: {:.1e} of {whole:.3}", off / whole);
-            assert!(off <= bound * whole, "{off} of {whole}");
+            assert!(off <= bound * whole.max(0.07), "{off} of {whole}");
         }
     }
 }

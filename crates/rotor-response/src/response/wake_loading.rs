@@ -1,7 +1,7 @@
 //! The loading of a wake: circulation over the disk, from the lift of the sections.
 
 use crate::response::revolution::{Lifting, unit_weights};
-use crate::{ResponseError, Rotor};
+use crate::{ResponseError, Rotor, SpanGrid};
 use nalgebra::DMatrix;
 use rotor_base::{harmonic_waves, uniform_azimuths_rad};
 use rotor_fem::TimeElements;
@@ -56,8 +56,20 @@ pub(crate) fn of_harmonics(n: usize, x: f64) -> f64 {
     1.0 + 2.0 * (1..=n).map(|k| (k as f64 * x).cos()).sum::<f64>()
 }
 
-/// Circulation at the panels of a wake: linear between stations, and in azimuth by the harmonics that both the wake's
-/// azimuths and the time elements resolve.
+/// Weights of the lifting stations, the last ones of the blade, in the mean over each panel of a wake: what its integral
+/// along the blade is does not depend on the panels.
+pub(crate) fn panel_means(grid: &SpanGrid, lifting: usize, panels: &WakeRotor) -> DMatrix<f64> {
+    let first = grid.len() - lifting;
+    let outboard: Vec<Vec<f64>> =
+        panels.nodes().iter().map(|r| grid.weights_outboard(*r)).collect();
+    let widths = panels.widths();
+    DMatrix::from_fn(panels.panels(), lifting, |k, s| {
+        (outboard[k][first + s] - outboard[k + 1][first + s]) / widths[k]
+    })
+}
+
+/// Circulation of the panels of a wake: its mean over each, and in azimuth by the harmonics that both the wake's azimuths
+/// and the time elements resolve.
 pub(crate) fn circulation(
     rotor: &Rotor,
     time: &TimeElements,
@@ -65,21 +77,18 @@ pub(crate) fn circulation(
     wake_rotor: &WakeRotor,
     azimuths: usize,
 ) -> Result<CirculationMap, ResponseError> {
-    let x = rotor.blade().grid().x();
-    let stations = &x[x.len() - lifting.first().map_or(0, Vec::len)..];
+    let stations = lifting.first().map_or(0, Vec::len);
+    let means = panel_means(rotor.blade().grid(), stations, wake_rotor);
     let weights = unit_weights(time);
     let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
-    let panels = wake_rotor.stations();
-    let of_panels: Vec<_> = panels.iter().map(|r| shares(stations, *r)).collect();
-    let history = DMatrix::from_fn(lifting.len(), panels.len(), |p, s| {
-        let parts = of_panels[s].iter().filter(|(_, share)| *share != 0.0);
-        weights[p] * parts.map(|(at, share)| share * lifting[p][*at].circulation).sum::<f64>()
-    });
+    let history =
+        DMatrix::from_fn(lifting.len(), stations, |p, s| weights[p] * lifting[p][s].circulation);
+    let history = history * means.transpose();
     // mean, then cosine and sine of every harmonic
     let mut coefficients = waves(harmonics, time.points()).tr_mul(&history);
     coefficients.rows_mut(1, 2 * harmonics).scale_mut(2.0);
     let values = waves(harmonics, &uniform_azimuths_rad(azimuths)) * coefficients;
-    Ok(CirculationMap::from_fn(azimuths, panels.len(), |i, s| values[(i, s)])?)
+    Ok(CirculationMap::from_fn(azimuths, wake_rotor.panels(), |i, s| values[(i, s)])?)
 }
 
 /// One, and cosine and sine of every harmonic, at azimuths: a row for each.

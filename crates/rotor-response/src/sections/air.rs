@@ -3,13 +3,16 @@
 //! ```text
 //! a   = V - W                                         the section through the air, coned blade axes
 //! V   = (u' - c y, v' + c X - s w, w' + s y)          X = x + u,  y = y_t + v,  c = cos bp,  s = sin bp
-//! W   = (c mu cos psi - s lambda, -mu sin psi, -(c lambda + s mu cos psi))
-//! om  = th' + w_x + bp                                pitch rate of the section
+//! W   = (c mu cos psi - s lambda, -(mu sin psi + u_i), -(c lambda + s mu cos psi))
+//! om  = th' + w_x + bp + mu cos psi th_x              rate at which the incidence grows along the chord
 //! U_T = a . chord                                     tangential, from leading to trailing edge
 //! U   = U_T + a . t tan L,  t = (1, v_x, w_x)         the same across a line swept back by L
 //! U_P = a . normal + e_d om                           down through the blade at the aerodynamic centre
 //! ```
-//! with chord and normal of [`SectionAxes`], along which the loads stand: velocity and force are each other's
+//! `u_i` is the induced velocity in the plane of the disk. Air that moves outward by `mu cos psi` meets another
+//! pitch: `th_x` is the slope of built-in and elastic twist, and acts as a pitch rate does.
+//!
+//! The axes are chord and normal of [`SectionAxes`], along which the loads stand: velocity and force are each other's
 //! transpose, so that in hover shaft torque is inflow times thrust plus profile drag whatever the blade does.
 //! With `Linear` and `Full` neither the foreshortening `u` nor the lag `v` carries the section round, `X = x` and
 //! `V_x = -c y_t`, and the normal does not lean back with a lagged blade: of a blade that turns as a whole about its
@@ -174,7 +177,7 @@ fn through_air<T: Number>(
     blade: &ResponseBlade,
     (motion, lane): (&Motion, usize),
     point: &AirPoint<T>,
-    (i, lambda): (usize, T),
+    (i, [lambda, along]): (usize, [T; 2]),
 ) -> Turned<T> {
     let (w, v) = (&motion.w, &motion.v);
     let (mu_sin, mu_cos) = (point.sin * point.advance_ratio, point.cos * point.advance_ratio);
@@ -189,7 +192,7 @@ fn through_air<T: Number>(
     Turned {
         value: [
             u_rate - (lag + y_t) * c - mu_cos * c + lambda * s,
-            rate + (u + x) * c - w.value::<T>(lane) * s + mu_sin,
+            rate + (u + x) * c - w.value::<T>(lane) * s + mu_sin + along,
             w_rate + (value + y_t) * s + lambda * c + mu_cos * s,
         ],
         rate: [
@@ -200,23 +203,28 @@ fn through_air<T: Number>(
     }
 }
 
-/// Flow at station `i`, whose motion stands in a lane or a block of lanes, for a total inflow `lambda` (down positive, tip
-/// speed).
+/// Flow at station `i`, whose motion stands in a lane or a block of lanes, for a total inflow (down positive) and an induced
+/// velocity in the plane of the disk (from the leading to the trailing edge), tip speed.
 #[inline(always)]
 pub(crate) fn section_flow<T: Number>(
     blade: &ResponseBlade,
     (motion, lane): (&Motion, usize),
     point: &AirPoint<T>,
-    (i, lambda): (usize, T),
+    (i, inflow): (usize, [T; 2]),
     delta: FlapAngle<T>,
 ) -> SectionFlow<T> {
     let (w, phi) = (&motion.w, &motion.phi);
     let theta = point.pitch.angle_rad + blade.twist[i] + phi.value::<T>(lane);
     let theta_rate = point.pitch.rate + phi.rate::<T>(lane);
     let AirScales { chord, centre, sweep, .. } = blade.air[i];
-    let om = theta_rate + w.slope::<T>(lane) + blade.precone;
-    let om_rate = point.pitch.acceleration + phi.acceleration::<T>(lane) + w.slope_rate::<T>(lane);
-    let through = through_air(blade, (motion, lane), point, (i, lambda));
+    // what the air along the blade meets of the twist
+    let (mu_sin, mu_cos) = (point.sin * point.advance_ratio, point.cos * point.advance_ratio);
+    let twist_slope = phi.slope::<T>(lane) + blade.twist_slope[i];
+    let om = theta_rate + w.slope::<T>(lane) + mu_cos * twist_slope + blade.precone;
+    let met_rate = mu_cos * phi.slope_rate::<T>(lane) - mu_sin * twist_slope;
+    let om_rate =
+        point.pitch.acceleration + phi.acceleration::<T>(lane) + w.slope_rate::<T>(lane) + met_rate;
+    let through = through_air(blade, (motion, lane), point, (i, inflow));
     let axes = SectionAxes::of(blade, motion, lane);
     let [u_t, u_t_rate] = through.along(&axes.chord);
     let [normal, normal_rate] = through.along(&axes.normal);
@@ -316,6 +324,8 @@ pub(crate) struct SectionPast<T = f64> {
     /// Share of the rigid section, without its flap, in the lag part of the lift; only of sections
     /// beyond linear theory.
     pub(crate) rigid_lift: T,
+    /// Circulatory share in the lag part of the lift; only of sections whose lift holds pressure waves.
+    pub(crate) circulatory_lift: T,
     /// What stall adds to the coefficients of normal force, chord force and moment.
     pub(crate) stall: [T; 3],
 }
@@ -326,6 +336,7 @@ impl SectionPast<Lanes> {
         SectionPast {
             lag: self.lag.map(|row| row.0[k]),
             rigid_lift: self.rigid_lift.0[k],
+            circulatory_lift: self.circulatory_lift.0[k],
             stall: self.stall.map(|row| row.0[k]),
         }
     }
@@ -341,6 +352,8 @@ pub(crate) struct PromptCoefficients<T = f64> {
     pub(crate) direct: Gains<T>,
     /// None if there are none.
     pub(crate) rate: Option<Gains<T>>,
+    /// Whether the lift holds pressure waves, see [`SectionCoefficients::has_waves`](flap_aero::SectionCoefficients).
+    pub(crate) has_waves: bool,
 }
 
 impl<T: Number> PromptCoefficients<T> {
@@ -352,6 +365,16 @@ impl<T: Number> PromptCoefficients<T> {
             None => T::default(),
         }
     }
+
+    /// What of the lift, as a velocity, are pressure waves that make no circulation.
+    #[inline(always)]
+    pub(crate) fn waves(&self, flow: &SectionFlow<T>, past: &SectionPast<T>) -> T {
+        if self.has_waves {
+            dot(&self.direct[0], &flow.input) + past.lag[0] - past.circulatory_lift
+        } else {
+            T::default()
+        }
+    }
 }
 
 impl PromptCoefficients<Lanes> {
@@ -360,6 +383,7 @@ impl PromptCoefficients<Lanes> {
         PromptCoefficients {
             direct: lane_of(&self.direct, k),
             rate: self.rate.map(|rate| lane_of(&rate, k)),
+            has_waves: self.has_waves,
         }
     }
 }
@@ -383,14 +407,14 @@ pub(crate) fn dot<T: Number>(a: &[T; 4], b: &[T; 4]) -> T {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }
 
-/// Section loads from the flow, the coefficients and the lag part of the three outputs
-/// (lift, moment, hinge moment, as velocities).
+/// Section loads from the flow, the coefficients and the past. The circulation is that of the lift without
+/// apparent mass and pressure waves.
 #[inline(always)]
 pub(crate) fn section_loads<T: Number>(
     scales: AirScales,
     flow: &SectionFlow<T>,
     coefficients: &PromptCoefficients<T>,
-    lag: [T; 3],
+    past: &SectionPast<T>,
 ) -> SectionLoads<T> {
     let stream = FreeStream {
         density: scales.density_chord / scales.chord,
@@ -398,6 +422,7 @@ pub(crate) fn section_loads<T: Number>(
         speed: flow.u_t,
     };
     let [lift, moment, hinge] = coefficients.direct;
+    let lag = past.lag;
     let circulating = [
         dot(&lift, &flow.input) + lag[0],
         dot(&moment, &flow.input) + lag[1],
@@ -410,12 +435,113 @@ pub(crate) fn section_loads<T: Number>(
     ];
     let loads = loads_of_outputs(&stream, circulating, apparent);
     let half = 0.5 * scales.density_chord;
+    let circulatory = circulating[0] - coefficients.waves(flow, past);
     SectionLoads {
         fz: loads.lift,
         fy: -(flow.sense * circulating[0] * flow.u_p + flow.u_t.abs() * flow.u_t * scales.drag)
             * half,
         moment: loads.moment,
         hinge: loads.hinge,
-        circulation: flow.sense * circulating[0] * (0.5 * scales.chord),
+        circulation: flow.sense * circulatory * (0.5 * scales.chord),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Discretisation, Rotor, RotorModel};
+    use approx::assert_abs_diff_eq;
+    use rotor_fem::{BladeProperties, BladeSpec, Twist};
+
+    const MU: f64 = 0.3;
+
+    /// A rotor whose blade is as twisted as a tilt rotor's, and a motion of its modes.
+    fn twisted(scale: f64) -> (Rotor, Motion) {
+        let spec = BladeSpec { twist: Twist::Linear { rate_rad: -0.6 }, ..BladeSpec::table_1() };
+        let blade = BladeProperties::new(spec).unwrap();
+        let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default());
+        let rotor = rotor.unwrap();
+        let count = rotor.blade().frequencies.len();
+        let wave = |k: f64| -> Vec<f64> {
+            (0..count).map(|j| scale * (k + 1.7 * j as f64).sin()).collect()
+        };
+        let parts = [wave(0.3), wave(1.1), wave(2.0)];
+        let mut motion = Motion::default();
+        motion.fill(rotor.blade(), parts.each_ref().map(Vec::as_slice));
+        (rotor, motion)
+    }
+
+    fn point(psi: f64) -> AirPoint {
+        let pitch = PitchMotion { angle_rad: 0.1, rate: 0.05, acceleration: -0.03 };
+        let (sin, cos) = psi.sin_cos();
+        AirPoint { sin, cos, advance_ratio: MU, pitch, reverse_flow: ReverseFlow::Gradual }
+    }
+
+    /// The pitch rate against the surface itself: a particle of air beside the blade moves outward by `mu cos psi` and meets
+    /// a section of another pitch. No-penetration on `z = w(x, t) - eta theta(x, t)`, `eta` toward the trailing edge, whose
+    /// slope along the chord is the pitch rate; derivatives of the surface by differences.
+    #[test]
+    fn the_pitch_rate_is_that_of_the_surface_the_air_passes() {
+        let (rotor, motion) = twisted(0.01);
+        let blade = rotor.blade();
+        for psi in [0.0, 0.8, 2.5, 4.0] {
+            let point = point(psi);
+            let radial = MU * psi.cos();
+            for i in [30, 45, 55] {
+                let flow = section_flow(blade, (&motion, i), &point, (i, [0.0; 2]), [0.0; 3]);
+                let x = blade.grid.x()[i];
+                let step = 1e-4;
+                // the surface around the station, rotating axes, after a time `t`
+                let pitch = |dx: f64, t: f64| {
+                    blade.properties.twist_rad(x + dx)
+                        + point.pitch.angle_rad
+                        + t * (point.pitch.rate + motion.phi.rate[i])
+                        + motion.phi.value[i]
+                        + dx * motion.phi.slope[i]
+                };
+                let height = |dx: f64, eta: f64, t: f64| {
+                    motion.w.value[i]
+                        + dx * (motion.w.slope[i] + blade.precone)
+                        + t * motion.w.rate[i]
+                        - eta * pitch(dx, t)
+                };
+                // velocity of the air that has to be made up for, by the speed along the blade and the turning axes
+                let upwash = |eta: f64| {
+                    let along_x = (height(step, eta, 0.0) - height(-step, eta, 0.0)) / (2.0 * step);
+                    let in_time = (height(0.0, eta, step) - height(0.0, eta, -step)) / (2.0 * step);
+                    -(in_time + (radial - eta) * along_x)
+                };
+                let eta = 1e-3;
+                let slope = (upwash(eta) - upwash(-eta)) / (2.0 * eta);
+                assert_abs_diff_eq!(flow.input[1] / blade.air[i].chord, slope, epsilon = 1e-9);
+            }
+        }
+    }
+
+    /// Rates of the inputs against differences over the azimuth, the controls at rest, and a velocity in the plane of the
+    /// disk against a blade that moves as much faster toward its leading edge.
+    #[test]
+    fn rates_follow_and_air_in_the_plane_is_a_faster_blade() {
+        let (rotor, motion) = twisted(0.0);
+        let (blade, i, step) = (rotor.blade(), 50, 1e-5);
+        let still = |psi: f64| AirPoint {
+            pitch: PitchMotion { angle_rad: 0.1, rate: 0.0, acceleration: 0.0 },
+            ..point(psi)
+        };
+        let at = |psi: f64| section_flow(blade, (&motion, i), &still(psi), (i, [0.0; 2]), [0.0; 3]);
+        for psi in [0.4, 2.0, 5.0] {
+            let (here, above, below) = (at(psi), at(psi + step), at(psi - step));
+            for k in 0..2 {
+                let slope = (above.input[k] - below.input[k]) / (2.0 * step);
+                assert_abs_diff_eq!(here.input_rate[k], slope, epsilon = 1e-9);
+            }
+            let mut faster = motion.clone();
+            faster.v.rate[i] += 0.02;
+            let rate = section_flow(blade, (&faster, i), &point(psi), (i, [0.01, 0.0]), [0.0; 3]);
+            let air = section_flow(blade, (&motion, i), &point(psi), (i, [0.01, 0.02]), [0.0; 3]);
+            assert_abs_diff_eq!(air.u_t, rate.u_t, epsilon = 1e-15);
+            assert_abs_diff_eq!(air.input[0], rate.input[0], epsilon = 1e-15);
+            assert!((air.u_t - at(psi).u_t - 0.02).abs() < 1e-12);
+        }
     }
 }

@@ -23,7 +23,7 @@ use crate::sections::fine_azimuth::{FineAzimuth, RigidSpeed};
 use crate::sections::lag::Collocation;
 use crate::sections::nonlinear::{TabledStation, add_stall};
 use crate::sections::stall_history::StallHistory;
-use crate::sections::station_lag::{RIGID_LIFT, StationLag};
+use crate::sections::station_lag::{CIRCULATORY_LIFT, RIGID_LIFT, StationLag};
 use crate::sections::station_lags::{LagScratch, StationLags};
 use crate::structure::blade::ResponseBlade;
 use crate::{ResponseError, ReverseFlow, RotorModel};
@@ -347,10 +347,11 @@ impl StationAir {
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
         let whole = StationLags::new(&lags, collocation.points());
+        let has_waves = coefficients.first().is_some_and(SectionCoefficients::has_waves);
         let mut rates = in_lanes(&rate).into_iter();
         let prompt = in_lanes(&direct)
             .into_iter()
-            .map(|direct| PromptCoefficients { direct, rate: rates.next() })
+            .map(|direct| PromptCoefficients { direct, rate: rates.next(), has_waves })
             .collect();
         let (settled, points) = (in_lanes(&settled), points.len());
         Ok(Self { points, prompt, settled, lags, whole, tables, stall })
@@ -408,7 +409,7 @@ impl StationAir {
             Kind::Whole => self.whole_loads(block, scales, flow, past),
             Kind::FlapSlope => {
                 let frictionless = AirScales { drag: 0.0, ..scales };
-                section_loads(frictionless, flow, &self.prompt[block], past.lag)
+                section_loads(frictionless, flow, &self.prompt[block], past)
             }
             Kind::DragAlone => {
                 let SectionFlow { u_t, sense, .. } = *flow;
@@ -431,7 +432,7 @@ impl StationAir {
         past: &SectionPast<Lanes>,
     ) -> SectionLoads<Lanes> {
         if self.tables.is_none() && self.stall.is_none() {
-            return section_loads(scales, flow, &self.prompt[block], past.lag);
+            return section_loads(scales, flow, &self.prompt[block], past);
         }
         self.nonlinear_loads(block, scales, flow, past)
     }
@@ -451,7 +452,7 @@ impl StationAir {
             let (flow, past) = (flows.lane(k), pasts.lane(k));
             let prompt = self.prompt[block].lane(k);
             let mut loads = match &self.tables {
-                None => section_loads(scales, &flow, &prompt, past.lag),
+                None => section_loads(scales, &flow, &prompt, &past),
                 Some(tables) => tables.loads(block * LANES + k, scales, &flow, &prompt, &past),
             };
             if self.stall.is_some() {
@@ -473,8 +474,11 @@ impl StationAir {
     ) -> Result<(), ResponseError> {
         let write = |p: usize, output: usize, share: f64| {
             let past = &mut pasts[p / LANES];
-            let row =
-                if output == RIGID_LIFT { &mut past.rigid_lift } else { &mut past.lag[output] };
+            let row = match output {
+                RIGID_LIFT => &mut past.rigid_lift,
+                CIRCULATORY_LIFT => &mut past.circulatory_lift,
+                _ => &mut past.lag[output],
+            };
             row.0[p % LANES] = share;
         };
         self.whole.outputs(|p, input| flows[p / LANES].input[input].0[p % LANES], lags, write);
@@ -497,9 +501,12 @@ impl StationAir {
     fn settled_past(&self, block: usize, flow: &SectionFlow<Lanes>) -> SectionPast<Lanes> {
         let gains = &self.settled[block];
         let [normal, rate, ..] = gains[0];
+        let lag = gains.each_ref().map(|row| dot(row, &flow.input));
         let mut past = SectionPast {
-            lag: gains.each_ref().map(|row| dot(row, &flow.input)),
+            lag,
             rigid_lift: normal * flow.input[0] + rate * flow.input[1],
+            // waves have passed
+            circulatory_lift: lag[0] + dot(&self.prompt[block].direct[0], &flow.input),
             ..SectionPast::default()
         };
         if let Some(stall) = &self.stall {

@@ -77,8 +77,13 @@ impl TabledStation {
         let rigid = per_normal * normal_velocity + per_rate * pitch_rate + past.rigid_lift;
         let [lift, moment, hinge] = past.lag;
         let frictionless = AirScales { drag: 0.0, ..scales };
-        let mut loads =
-            section_loads(frictionless, flow, coefficients, [lift - rigid, moment, hinge]);
+        // what the table's lift holds is taken out of the lift, not of the pressure waves
+        let left = SectionPast {
+            lag: [lift - rigid, moment, hinge],
+            circulatory_lift: past.circulatory_lift - rigid,
+            ..*past
+        };
+        let mut loads = section_loads(frictionless, flow, coefficients, &left);
         let (sin, cos) = flow.pitch.sin_cos();
         let (u_t, u_p) = (flow.u_t, flow.u_p);
         let chordwise = u_t * cos + u_p * sin;

@@ -6,6 +6,8 @@ use flap_aero::SectionCoefficients;
 
 /// Place of the part of the rigid section in the lift, behind lift, moment and hinge moment.
 pub(crate) const RIGID_LIFT: usize = 3;
+/// Place of the circulatory part of the lift.
+pub(crate) const CIRCULATORY_LIFT: usize = 4;
 
 /// Slowest reduced-time rate, in semichords per rad, so that a lag state crossing the reverse-flow
 /// boundary still has an equation.
@@ -19,6 +21,8 @@ pub(crate) struct StationLag {
     pub(crate) gains: Vec<(usize, Vec<f64>)>,
     /// Whether the flap has no part in it; only of sections beyond linear theory.
     pub(crate) rigid: bool,
+    /// Whether it is circulatory; only of sections whose lift holds pressure waves too.
+    pub(crate) circulatory: bool,
     /// Rate at every point, per rad.
     pub(crate) rates: Vec<f64>,
     pub(crate) lag: PeriodicLag,
@@ -27,7 +31,11 @@ pub(crate) struct StationLag {
 impl StationLag {
     /// Its gain at every point in an output of [`StationLags`], if it has one.
     pub(crate) fn gain(&self, output: usize) -> Option<&[f64]> {
-        let of = if output == RIGID_LIFT { self.rigid.then_some(0)? } else { output };
+        let of = match output {
+            RIGID_LIFT => self.rigid.then_some(0)?,
+            CIRCULATORY_LIFT => self.circulatory.then_some(0)?,
+            _ => output,
+        };
         self.gains.iter().find(|(place, _)| *place == of).map(|(_, gain)| gain.as_slice())
     }
 
@@ -57,8 +65,10 @@ impl StationLag {
             .filter(|(_, along)| along.iter().any(|gain| *gain != 0.0))
             .collect();
         let input = coefficients.first().map_or([0.0; 4], |k| of(k).input);
+        let circulatory =
+            coefficients.first().is_some_and(|k| k.has_waves() && of(k).is_circulatory);
         let rigid = input[2] == 0.0 && input[3] == 0.0;
         let lag = PeriodicLag::new(collocation, &rates)?;
-        Ok(Self { input, gains, rigid, rates, lag })
+        Ok(Self { input, gains, rigid, circulatory, rates, lag })
     }
 }

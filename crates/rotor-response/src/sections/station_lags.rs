@@ -12,13 +12,13 @@
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 
-use crate::sections::station_lag::{RIGID_LIFT, StationLag};
+use crate::sections::station_lag::{CIRCULATORY_LIFT, StationLag};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Points, or channels, that are summed side by side.
 const LANES: usize = 8;
-/// Outputs: lift, moment, hinge moment, and the part of the rigid section in the lift.
-const OUTPUTS: usize = RIGID_LIFT + 1;
+/// Outputs: lift, moment, hinge moment, and the parts of the rigid section and of the circulation in the lift.
+const OUTPUTS: usize = CIRCULATORY_LIFT + 1;
 type Lanes = [f64; LANES];
 
 /// One output and the channels it has.
@@ -287,7 +287,14 @@ mod tests {
                     let gains = [0, 1, 2].map(|o| (usize::from(o), gain(o)));
                     let gains = gains.into_iter().filter(|g| g.0 <= usize::from(c)).collect();
                     let lag = PeriodicLag::new(&collocation, &rates).unwrap();
-                    StationLag { input, gains, rigid: c % 2 == 0, rates, lag }
+                    StationLag {
+                        input,
+                        gains,
+                        rigid: c % 2 == 0,
+                        circulatory: c % 3 == 0,
+                        rates,
+                        lag,
+                    }
                 })
                 .collect();
             let inputs: Vec<[f64; 4]> = psi

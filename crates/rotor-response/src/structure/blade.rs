@@ -21,7 +21,7 @@ pub(crate) struct Shapes {
     pub(crate) value: Vec<Vec<f64>>,
     pub(crate) slope: Vec<Vec<f64>>,
     pub(crate) curvature: Vec<Vec<f64>>,
-    /// Whether curvature and rates of the slope mean anything: not in torsion.
+    /// Whether curvature and acceleration of the slope mean anything: not in torsion.
     pub(crate) bend: bool,
 }
 
@@ -63,6 +63,8 @@ pub struct ResponseBlade {
     pub(crate) km2_squared: Vec<f64>,
     pub(crate) ka_squared: Vec<f64>,
     pub(crate) twist: Vec<f64>,
+    /// Rate of the built-in twist along the blade, rad per R.
+    pub(crate) twist_slope: Vec<f64>,
     pub(crate) tension: Vec<f64>,
     pub(crate) precone: f64,
     /// Its sine and cosine.
@@ -164,6 +166,7 @@ impl ResponseBlade {
             km2_squared: along(&|x| properties.squared_mass_radii(x)[1]),
             ka_squared: along(&|x| properties.squared_area_radius(x)),
             twist: along(&|x| properties.twist_rad(x)),
+            twist_slope: along(&|x| properties.twist_rate_rad(x)),
             tension: along(&|x| properties.tension(x)),
             precone: properties.spec().precone_rad,
             cone: properties.spec().precone_rad.sin_cos().into(),

@@ -11,8 +11,8 @@ use rotor_fem::OrbitSamples;
 use std::ops::Range;
 
 /// Displacement family in lanes, stations or azimuth points: value, slope, curvature; rates of value and slope;
-/// accelerations of value and slope. Radius R and rad; time is azimuth. Of twist neither curvature nor rates of the
-/// slope, for which nothing asks.
+/// accelerations of value and slope. Radius R and rad; time is azimuth. Of twist neither curvature nor acceleration of
+/// the slope, for which nothing asks.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Deflection {
     pub(crate) value: Vec<f64>,
@@ -62,7 +62,7 @@ impl Deflection {
             (&mut self.rate, value, 1),
             (&mut self.acceleration, value, 2),
             (&mut self.curvature, bent(curvature), 0),
-            (&mut self.slope_rate, bent(slope), 1),
+            (&mut self.slope_rate, slope, 1),
             (&mut self.slope_acceleration, bent(slope), 2),
         ]
     }

@@ -13,4 +13,5 @@ mod physics;
 mod power;
 mod stability;
 mod station_loads;
+mod wake_circulation;
 mod wake_lines;

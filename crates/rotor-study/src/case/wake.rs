@@ -97,7 +97,7 @@ section! {
         pub preset: WakePreset = WakePreset::ForwardFlight, Any, "", "";
         /// Where the circulation comes from: the trimmed rotor, or given for `hhc wake`.
         pub circulation: CirculationChoice = CirculationChoice::Trimmed, Any, "", "";
-        /// Age up to which all trailers are kept; by the preset 360, one revolution, in hover 90.
+        /// Age up to which all trailers are kept; by the preset 360, in hover 90.
         pub near_wake_deg: Option<f64> = None, Within(1.0, 1440.0), "deg", "360 is one revolution";
         /// Core radius of the near wake where it passes blades; left out: one chord.
         pub near_core_r: Option<f64> = None, Within(1e-3, 0.2), "R", "leave it out for the chord of the blade";

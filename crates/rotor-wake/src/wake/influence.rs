@@ -189,31 +189,16 @@ impl LineInduction {
         [self.down.matrix(), self.along.matrix()]
     }
 
-    /// Inflow of a circulation.
+    /// Induced velocity of a circulation, down through the disk and in its plane.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] for a circulation of another grid.
     pub fn inflow(&self, circulation: &CirculationMap) -> Result<InflowMap, WakeError> {
-        self.applied(&self.down, circulation)
-    }
-
-    /// Induced velocity in the plane of the disk from the leading to the trailing edge.
-    ///
-    /// # Errors
-    /// [`WakeError::BadInput`] for a circulation of another grid.
-    pub fn in_plane(&self, circulation: &CirculationMap) -> Result<InflowMap, WakeError> {
-        self.applied(&self.along, circulation)
-    }
-
-    fn applied(
-        &self,
-        map: &RowBlocks,
-        circulation: &CirculationMap,
-    ) -> Result<InflowMap, WakeError> {
         let count = circulation.values().len();
         let expected = "azimuths times panels of the wake";
-        ensure(count == map.order(), "values of the circulation", count as f64, expected)?;
-        InflowMap::new(&self.rotor, map.times(circulation.values()))
+        ensure(count == self.down.order(), "values of the circulation", count as f64, expected)?;
+        let [down, along] = [&self.down, &self.along].map(|map| map.times(circulation.values()));
+        InflowMap::new(&self.rotor, down)?.with_in_plane(along)
     }
 }
 
@@ -230,6 +215,23 @@ pub struct CirculationSlope {
     pub blocks: Vec<(usize, usize, DMatrix<f64>)>,
 }
 
+impl CirculationSlope {
+    /// Change of the circulation by a change of the inflow, azimuth by azimuth.
+    fn times(&self, inflow: &[f64], panels: usize) -> Vec<f64> {
+        let mut circulation = vec![0.0; inflow.len()];
+        for (from, to, block) in &self.blocks {
+            for (k, column) in block.column_iter().enumerate() {
+                let change = inflow[k * panels + to];
+                let rows = circulation.iter_mut().skip(*from).step_by(panels);
+                for (sum, slope) in rows.zip(&column) {
+                    *sum += slope * change;
+                }
+            }
+        }
+        circulation
+    }
+}
+
 /// An inflow model: the wake as it is, carrying whatever circulation the blades have.
 ///
 /// The geometry stays; the inflow follows the circulation at once. This is what a response or a trim sees
@@ -240,6 +242,7 @@ pub struct FrozenWake {
     reference: InflowMap,
     /// Of a Newton step, factorised; single precision is enough for a step, and half the memory to read.
     newton: Arc<PartialPivLu<f32>>,
+    slope: Arc<CirculationSlope>,
 }
 
 impl FrozenWake {
@@ -247,9 +250,9 @@ impl FrozenWake {
     /// which sets the speed of convergence, not the result:
     ///
     /// ```text
-    /// dlambda = (I - A C)^-1 (A Gamma - lambda)
+    /// dlambda = (I - A C)^-1 (A Gamma - lambda),      du_t = B Gamma - u_t + B C dlambda
     /// ```
-    /// is Newton's step where the blades stay as they are.
+    /// is Newton's step where the blades stay as they are and their circulation follows the inflow alone.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] for a circulation or a slope of another grid.
@@ -272,7 +275,8 @@ impl FrozenWake {
         }
         let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)] as f32);
         let newton = Arc::new(newton.partial_piv_lu());
-        Ok(Self { newton, induction: Arc::new(induction), reference })
+        let slope = Arc::new(slope.clone());
+        Ok(Self { newton, slope, induction: Arc::new(induction), reference })
     }
 
     /// The wake after its geometry has moved on, on the same grid: it keeps Newton's matrix.
@@ -288,8 +292,8 @@ impl FrozenWake {
         let found = induction.down.order();
         ensure(found == size, "order of a map of circulation", found as f64, expected)?;
         let reference = induction.inflow(circulation)?;
-        let newton = Arc::clone(&self.newton);
-        Ok(Self { induction: Arc::new(induction), reference, newton })
+        let (newton, slope) = (Arc::clone(&self.newton), Arc::clone(&self.slope));
+        Ok(Self { induction: Arc::new(induction), reference, newton, slope })
     }
 }
 
@@ -315,9 +319,14 @@ impl InflowModel for FrozenWake {
     }
 
     fn improved_step(&self, change: &[f64]) -> Option<Vec<f64>> {
-        let mut step = Mat::from_fn(change.len(), 1, |row, _| change[row] as f32);
+        let size = self.induction.down.order();
+        let (down, in_plane) = change.split_at_checked(size)?;
+        let mut step = Mat::from_fn(size, 1, |row, _| down[row] as f32);
         self.newton.solve_in_place(step.as_mut());
-        let step: Vec<f64> = (0..change.len()).map(|row| f64::from(step[(row, 0)])).collect();
+        let mut step: Vec<f64> = (0..size).map(|row| f64::from(step[(row, 0)])).collect();
+        let circulation = self.slope.times(&step, self.induction.rotor.panels());
+        let followed = self.induction.along.times(&circulation);
+        step.extend(in_plane.iter().zip(followed).map(|(change, more)| change + more));
         step.iter().all(|value| value.is_finite()).then_some(step)
     }
 }

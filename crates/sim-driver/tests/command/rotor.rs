@@ -446,8 +446,8 @@ fn values_of_another_unit_and_blades_near_divergence_are_doubted() {
             "inflow.model.near_wake: a near wake of 360 deg held in the plane of its blade",
         ),
         (
-            "advance_ratio: 0.2, inflow: (model: FreeWake(near_wake_deg: 90))",
-            "inflow.model.near_wake_deg: a near wake of 90 deg is short in forward flight",
+            "advance_ratio: 0.2, inflow: (model: FreeWake(near_wake_deg: 60))",
+            "inflow.model.near_wake_deg: a near wake of 60 deg is rolled up before the next blade",
         ),
         (
             "inflow: (model: FreeWake(azimuths: 72))",

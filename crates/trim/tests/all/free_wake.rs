@@ -157,7 +157,11 @@ fn sections_from_a_table_carry_the_wake_of_the_linear_law() {
             let size = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size
         };
-        let inflow = of(&|wake| wake.trim.rotor.inflow.parameters());
+        // of the velocity in the plane, which is smaller, the geometry leaves more unsettled than the law
+        let inflow = of(&|wake| match &wake.trim.rotor.inflow {
+            InducedInflow::Map(map) => map.values().to_vec(),
+            other => other.parameters(),
+        });
         [inflow, of(&|wake| wake.trim.rotor.hub.harmonic(4).to_vec())]
     };
     let [small, large] = [3e-3, 1.2e-2].map(apart);
@@ -289,7 +293,7 @@ fn distance<'a>(pairs: impl Iterator<Item = (&'a [f64; 12], &'a [f64; 12])>) -> 
 /// its own; with the geometry of the wake held it is out of the same bound.
 #[test]
 fn the_linearised_rotor_holds_what_its_wake_answers() {
-    let (mu, step_deg, settings) = (0.25, 0.5, few_steps(3));
+    let (mu, step_deg, settings) = (0.25, 0.25, few_steps(3));
     let mut solver = few_modes(RotorModel::paper_case(), mu);
     let target =
         TrimTarget::WindTunnel { ct_sigma: 0.07, shaft_tilt_rad: mu * 0.3, hub_moments: [0.0; 2] };

@@ -121,7 +121,10 @@ impl CalibratedSection {
         let mut lags = Vec::with_capacity(POLES * inputs);
         for pole in poles {
             for j in 0..inputs {
-                let mut lag = LagChannel { pole, input: [0.0; 4], output: [0.0; 3] };
+                // the fit does not part the circulation from pressure waves
+                let is_circulatory = true;
+                let mut lag =
+                    LagChannel { pole, input: [0.0; 4], output: [0.0; 3], is_circulatory };
                 lag.input[j] = 1.0;
                 lags.push(lag);
             }

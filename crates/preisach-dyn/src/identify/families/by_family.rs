@@ -5,6 +5,7 @@ use crate::identify::families::{layered, stop_fit};
 use crate::identify::fit::output_error::{Build, Slopes};
 use crate::identify::fit::preisach::{RateFit, fit_linear};
 use crate::identify::fit::refine::Refined;
+use crate::identify::fit::static_fit;
 use crate::identify::fit::training::Training;
 use crate::identify::{RateSmoothness, Settings};
 use crate::{
@@ -34,7 +35,7 @@ pub(crate) fn fit(
     let training = &training.with_rate(&settings);
     match family {
         Family::StaticPreisach => {
-            let law = StaticPreisach::new(training.grid, training.measured_map()?)?;
+            let law = StaticPreisach::new(training.grid, static_fit::as_measured(training)?)?;
             let model = settings.actuator_of(ActuatorLaw::StaticPreisach(law));
             Ok(Fitted { model, parameters: Vec::new() })
         }
@@ -45,7 +46,7 @@ pub(crate) fn fit(
             };
             let settings = Settings { time_order, ..settings.clone() };
             let training = training.with_rate(&settings);
-            let map = training.measured_map()?;
+            let map = static_fit::as_measured(&training)?;
             let rate = RateFit::new(&training, map, given.uncertainty())?;
             let Refined { law, parameters, .. } = rate.refined;
             Ok(Fitted { model: settings.actuator_of(law), parameters })

@@ -6,7 +6,7 @@ use crate::identify::fit::output_error::Estimate;
 use crate::identify::fit::preisach::{trained_range, zero_deg};
 use crate::identify::fit::roles::Bench;
 use crate::identify::fit::training::Training;
-use crate::identify::fit::{compare, validate};
+use crate::identify::fit::{compare, static_fit, validate};
 use crate::identify::records::prepared::Prepared;
 use crate::identify::{BenchRecord, Identifiability, RecordFit, RecordUse, Settings};
 use crate::{ActuatorModel, PreisachError, PreisachGrid};
@@ -240,7 +240,7 @@ impl<'a> Contest<'a> {
         let training = Training::of(&prepared, grid, settings)?;
         let (summary, zero_deg) = (bench.summary(&training), zero_deg(&training));
         // one smoothness for all folds, chosen on the training records
-        let map = training.measured_map()?;
+        let map = static_fit::as_measured(&training)?;
         let smoothness = validate::smoothness(&training, &map).0;
         Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness })
     }

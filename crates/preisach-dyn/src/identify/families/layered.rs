@@ -72,7 +72,7 @@ pub(crate) fn dynamic_creep(
             };
             let own = all.iter().zip(&stripped).map(prepare).collect::<Result<Vec<_>, _>>()?;
             let own = Training::of(&own, grid, settings)?;
-            let fit = RateFit::new(&own, own.measured_map()?, given.uncertainty())?;
+            let fit = RateFit::new(&own, static_fit::as_measured(&own)?, given.uncertainty())?;
             let Refined { law, parameters, .. } = fit.refined;
             let mut model = settings.actuator_of(law);
             model.linkage.push(creep);
@@ -105,7 +105,7 @@ pub(crate) fn relaxation(
     let (settings, all) = (training.settings, training.all());
     let mut map = match given.whole {
         Some(whole) => remapped(training, &whole.model)?,
-        None => training.measured_map()?,
+        None => static_fit::as_measured(training)?,
     };
     let everywhere =
         [(0.02, -6.0), (0.02, -1.5), (0.004, -3.0)].map(|(time_s, at_once): (f64, f64)| {

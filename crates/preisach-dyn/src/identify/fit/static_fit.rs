@@ -23,7 +23,7 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
     let Training { grid, settings, slow: records, .. } = training;
     let unknowns = Unknowns::new(grid);
     let spread = targets_deg.iter().map(|targets| spread(targets)).fold(0.0, f64::max);
-    let mut program = training.normal().clone();
+    let mut program = normal(training).clone();
     let mut row = Row::new();
     for (record, targets) in records.iter().zip(targets_deg) {
         let weight = weight(training, record);
@@ -38,18 +38,20 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
 }
 
 /// The samples of the slow records, the weights of all together 1, without targets.
-pub(crate) fn normal(training: &Training) -> LeastSquaresProgram {
-    let unknowns = Unknowns::new(&training.grid);
-    let mut program = LeastSquaresProgram::new(unknowns.count);
-    let mut row = Row::new();
-    for record in &training.slow {
-        let weight = weight(training, record);
-        for (_, cells) in record.states() {
-            unknowns.hats(cells, &mut row);
-            program.add(&row, 0.0, weight);
+fn normal<'a>(training: &'a Training) -> &'a LeastSquaresProgram {
+    training.slow_once.normal.get_or_init(|| {
+        let unknowns = Unknowns::new(&training.grid);
+        let mut program = LeastSquaresProgram::new(unknowns.count);
+        let mut row = Row::new();
+        for record in &training.slow {
+            let weight = weight(training, record);
+            for (_, cells) in record.states() {
+                unknowns.hats(cells, &mut row);
+                program.add(&row, 0.0, weight);
+            }
         }
-    }
-    program
+        program
+    })
 }
 
 /// Weight of a sample of a slow record: records weigh alike.
@@ -59,13 +61,16 @@ fn weight(training: &Training, record: &Prepared) -> f64 {
 
 /// As [`fit`], to the outputs of the records as they stand.
 pub(crate) fn as_measured(training: &Training) -> Result<PlayMap, PreisachError> {
-    let measured = training.slow.iter().map(|r| r.record.output_deg.clone());
-    fit(training, &measured.collect::<Vec<_>>())
+    let map = training.slow_once.map.get_or_init(|| {
+        let measured = training.slow.iter().map(|r| r.record.output_deg.clone());
+        fit(training, &measured.collect::<Vec<_>>())
+    });
+    map.clone()
 }
 
 /// Numbers of the density that the slow records determine, and how many there are.
 pub(crate) fn determined(training: &Training) -> [usize; 2] {
-    [training.normal().rank(RANK), Unknowns::new(&training.grid).count]
+    [normal(training).rank(RANK), Unknowns::new(&training.grid).count]
 }
 
 /// Information of a direction below this share of the largest counts as none.

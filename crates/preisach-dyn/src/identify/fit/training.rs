@@ -2,7 +2,6 @@
 
 use crate::identify::Settings;
 use crate::identify::fit::program::LeastSquaresProgram;
-use crate::identify::fit::static_fit;
 use crate::identify::records::prepared::Prepared;
 use crate::{PlayMap, PreisachError, PreisachGrid};
 use std::sync::{Arc, OnceLock};
@@ -16,17 +15,17 @@ pub(crate) struct Training<'p> {
     pub(crate) slow: Vec<&'p Prepared<'p>>,
     /// Those that train the rate maps.
     pub(crate) fast: Vec<&'p Prepared<'p>>,
-    slow_once: Arc<SlowOnce>,
+    pub(crate) slow_once: Arc<SlowOnce>,
 }
 
 /// What is found once of the slow records: it serves every family, and every fold that leaves only fast
 /// records out.
 #[derive(Debug, Default)]
-struct SlowOnce {
-    /// See [`static_fit::normal`].
-    normal: OnceLock<LeastSquaresProgram>,
+pub(crate) struct SlowOnce {
+    /// Their samples without targets, the weights of all together 1.
+    pub(crate) normal: OnceLock<LeastSquaresProgram>,
     /// The static map of the outputs as measured.
-    map: OnceLock<Result<PlayMap, PreisachError>>,
+    pub(crate) map: OnceLock<Result<PlayMap, PreisachError>>,
 }
 
 impl<'p> Training<'p> {
@@ -64,16 +63,6 @@ impl<'p> Training<'p> {
         let is_same = slow.len() == self.slow.len();
         let slow_once = if is_same { Arc::clone(&self.slow_once) } else { Arc::default() };
         Self { slow, fast, slow_once, ..*self }
-    }
-
-    /// Least squares of the slow records without targets, see [`static_fit::normal`].
-    pub(crate) fn normal(&self) -> &LeastSquaresProgram {
-        self.slow_once.normal.get_or_init(|| static_fit::normal(self))
-    }
-
-    /// The static map of the slow records as they were measured.
-    pub(crate) fn measured_map(&self) -> Result<PlayMap, PreisachError> {
-        self.slow_once.map.get_or_init(|| static_fit::as_measured(self)).clone()
     }
 
     /// All of them, the slow ones first.

@@ -1,6 +1,6 @@
 //! What the lags of a station remember: their periodic states beyond those settled on their inputs.
 
-use super::{FlightAir, StationAir};
+use super::{FlightAir, StationAir, StationLag};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::LANES;
@@ -57,8 +57,8 @@ impl FlightAir {
 }
 
 impl FlightAir {
-    /// Change of the lift per speed of every lifting station at all points with its first input `U alpha` at all
-    /// points; over tables, that of their linear sections.
+    /// Change of the circulatory lift per speed of every lifting station at all points with its first input `U alpha`
+    /// at all points; over tables, that of their linear sections.
     pub(crate) fn lift_slopes(&self) -> Vec<DMatrix<f64>> {
         self.stations.par_iter().map(|station| station.air.lift_slope()).collect()
     }
@@ -68,10 +68,14 @@ impl StationAir {
     fn lift_slope(&self) -> DMatrix<f64> {
         let points = self.points;
         let mut slope = DMatrix::zeros(points, points);
-        for p in 0..points {
-            slope[(p, p)] = self.prompt[p / LANES].direct[0][0].0[p % LANES];
+        let has_waves = self.prompt.first().is_some_and(|prompt| prompt.has_waves);
+        if !has_waves {
+            for p in 0..points {
+                slope[(p, p)] = self.prompt[p / LANES].direct[0][0].0[p % LANES];
+            }
         }
-        for channel in self.lags.iter().filter(|lag| lag.input[0] != 0.0) {
+        let makes = |lag: &&StationLag| lag.input[0] != 0.0 && (lag.circulatory || !has_waves);
+        for channel in self.lags.iter().filter(makes) {
             for (_, gains) in channel.gains.iter().filter(|(output, _)| *output == 0) {
                 let operator = channel.lag.operator();
                 for (mut sums, column) in slope.column_iter_mut().zip(operator.column_iter()) {
@@ -86,7 +90,7 @@ impl StationAir {
 
     fn channels(&self) -> Vec<LagChannel> {
         let points = self.points;
-        let of = |lag: &super::StationLag| {
+        let of = |lag: &StationLag| {
             let mut gains = vec![[0.0; 2]; points];
             for (output, along) in lag.gains.iter().filter(|(output, _)| *output < 2) {
                 for (gain, value) in gains.iter_mut().zip(along) {

@@ -23,8 +23,8 @@ const NEAR_STALL_LIFT_COEFFICIENT: f64 = 0.69;
 const SECTION_STALL: f64 = 1.4;
 /// Longest near wake, deg, that may lie in the plane of its blade: that of a four-bladed rotor's next blade.
 const LONGEST_IN_PLANE_DEG: f64 = 90.0;
-/// Shortest near wake that forward flight does not see, deg: the refinement of the free wake.
-const SHORTEST_IN_FLIGHT_DEG: f64 = 270.0;
+/// Shortest near wake, deg, with which measured airloads are met: that of a four-bladed rotor's next blade.
+const SHORTEST_IN_FLIGHT_DEG: f64 = 90.0;
 
 /// Drag over weight above which no helicopter flies level.
 const MOST_DRAG: f64 = 0.27;
@@ -120,7 +120,7 @@ impl Case {
         let flies = is_trimmed && !in_plane && self.advance_ratio > 0.0;
         if flies && near_wake_deg < SHORTEST_IN_FLIGHT_DEG {
             let message = format!(
-                "a near wake of {near_wake_deg} deg is short in forward flight: with 90 deg the mean inflow is a tenth too large and the phase of the vibratory thrust 80 deg off, from {SHORTEST_IN_FLIGHT_DEG} deg on both stay. Leave it out for 360"
+                "a near wake of {near_wake_deg} deg is rolled up before the next blade passes: the measured airloads of HART II are met worst with such, at a correlation of 0.45 against 0.8 from {SHORTEST_IN_FLIGHT_DEG} to 180 deg. Give {SHORTEST_IN_FLIGHT_DEG} or more, or leave it out for 360"
             );
             warnings.push(warning("inflow.model.near_wake_deg", message));
         }
