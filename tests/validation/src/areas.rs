@@ -339,6 +339,23 @@ pub const AREAS: &[Area] = &[
             "V-STUDY-23",
         ],
     },
+    Area {
+        heading: "Measured rotors (`e2e`)",
+        ids: &[
+            "V-MEAS-01",
+            "V-MEAS-02",
+            "V-MEAS-03",
+            "V-MEAS-04",
+            "V-MEAS-05",
+            "V-MEAS-06",
+            "V-MEAS-07",
+            "V-MEAS-08",
+            "V-MEAS-09",
+            "V-MEAS-10",
+            "V-MEAS-11",
+            "V-MEAS-12",
+        ],
+    },
 ];
 
 /// Ids of all rows, in the order of the page.

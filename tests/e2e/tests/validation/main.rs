@@ -4,6 +4,7 @@
 mod actuator;
 mod actuator_data;
 mod discovery;
+mod measured_rotors;
 mod refinement;
 mod study;
 
@@ -22,6 +23,11 @@ fn actuator_data_rows() {
 #[test]
 fn discovery_rows() {
     hold(discovery::ROWS);
+}
+
+#[test]
+fn measured_rotors_rows() {
+    hold(measured_rotors::ROWS);
 }
 
 #[test]

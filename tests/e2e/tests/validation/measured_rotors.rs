@@ -1,0 +1,265 @@
+//! The rotor against measured rotors: HART II and `HeliNOVI`.
+
+use std::sync::LazyLock;
+
+use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_response::{StationAirloads, TipMotion};
+use rotor_study::{ModesQuestion, TrimmedRotor, rotating_modes};
+use sim_driver::case::{FreeWakeValues, InflowChoice, shipped_case};
+use validation::{Check, Failure, Table, row, shared, too_few};
+
+const HART: &str = "measured: HART II, fixtures/measured/hart_ii";
+const HELINOVI: &str = "measured: HeliNOVI, fixtures/measured/helinovi";
+
+pub(crate) const ROWS: &[Check] = &[
+    row(
+        "V-MEAS-01",
+        "HART II blade tuned to its six frequencies: largest error; nothing else is tuned",
+        "%",
+    )
+    .against("remembered documentation, fixtures/measured/hart_ii/SOURCE.md")
+    .at_most(1.5, frequencies),
+    row("V-MEAS-02", "HART II, baseline: C_n M^2 at 0.87 R, 1 to 6/rev, correlation", "-")
+        .against(HART)
+        .at_least(0.80, || Ok(airload(baseline()?)?.correlation)),
+    row("V-MEAS-03", "the same: rms distance", "-")
+        .against(HART)
+        .at_most(0.010, || Ok(airload(baseline()?)?.rms)),
+    row("V-MEAS-04", "the same, near wake of 360 in place of 180 deg: correlation", "-")
+        .against(HART)
+        .near(0.654, 0.03, || Ok(airload(with_near_wake(360.0)?)?.correlation)),
+    row("V-MEAS-05", "the same, near wake of 30 deg: correlation", "-").against(HART).near(
+        0.44,
+        0.05,
+        || Ok(airload(with_near_wake(30.0)?)?.correlation),
+    ),
+    row("V-MEAS-06", "the same: tip deflection, rms distance; shown, the bar is 0.35", "% R")
+        .against(HART)
+        .near(0.41, 0.03, || tip(&baseline()?.tip, TIP_FLAP, |at| 100.0 * at.flap)),
+    row(
+        "V-MEAS-07",
+        "the same: elastic twist of the tip, rms distance; shown, the bar is 0.35",
+        "deg",
+    )
+    .against(HART)
+    .near(0.50, 0.03, || tip(&baseline()?.tip, TIP_TWIST, |at| at.twist_rad.to_degrees())),
+    row(
+        "V-MEAS-08",
+        "the same: centres of tip vortices, vertical rms distance; shown, the bar is 3.0",
+        "% R",
+    )
+    .against(HART)
+    .near(3.3, 0.3, || vertical_distance(baseline()?)),
+    row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
+        .against(HELINOVI)
+        .at_least(0.85, || Ok(section(level()?, "ID2", 1)?.correlation)),
+    row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-")
+        .against(HELINOVI)
+        .near(0.42, 0.05, || Ok(section(level()?, "ID2", 2)?.correlation)),
+    row("V-MEAS-11", "HeliNOVI, climb: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
+        .against(HELINOVI)
+        .at_least(0.85, || Ok(section(climb()?, "ID1", 1)?.correlation)),
+    row("V-MEAS-12", "the same, 2 to 6/rev; shown", "-").against(HELINOVI).near(
+        0.565,
+        0.05,
+        || Ok(section(climb()?, "ID1", 2)?.correlation),
+    ),
+];
+
+/// Harmonics that are compared.
+const MOST: usize = 6;
+const STATION: f64 = 0.87;
+const AZIMUTHS: usize = 360;
+const TIP_FLAP: [&str; 2] = ["tip_flap.csv", "tip_deflection_percent_r"];
+const TIP_TWIST: [&str; 2] = ["tip_elastic_twist.csv", "elastic_twist_deg"];
+
+/// A rotor trimmed in its free wake.
+struct Flown {
+    station: StationAirloads,
+    tip: Vec<TipMotion>,
+    radius_m: f64,
+    /// Nodes of the tip vortex in hub axes, unit R, by azimuth of its blade and age.
+    tip_vortex: Vec<Vec<[f64; 3]>>,
+}
+
+fn flown(case: &str, near_wake_deg: Option<f64>) -> Result<Flown, Failure> {
+    let mut case = shipped_case(case)?.case;
+    if near_wake_deg.is_some() {
+        case.inflow.model =
+            InflowChoice::FreeWake(FreeWakeValues { near_wake_deg, ..FreeWakeValues::default() });
+    }
+    let rotor = TrimmedRotor::new(&case, None)?;
+    let (stations, tip) = rotor.airloads(&[STATION], case.tip_mach(), AZIMUTHS)?;
+    let station = stations.into_iter().next().ok_or_else(|| too_few("stations", 0, 1))?;
+    let vortex = rotor.wake().and_then(|trim| trim.wake.vortices().pop());
+    let tip_vortex = vortex.ok_or_else(|| too_few("vortices", 0, 1))?.points;
+    Ok(Flown { station, tip, radius_m: case.rotor.radius_m, tip_vortex })
+}
+
+static BASELINE: LazyLock<Result<Flown, Failure>> = LazyLock::new(|| flown("hart_ii_bl.ron", None));
+static LONG: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("hart_ii_bl.ron", Some(360.0)));
+static SHORT: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("hart_ii_bl.ron", Some(30.0)));
+static LEVEL: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("helinovi_level.ron", None));
+static CLIMB: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("helinovi_climb.ron", None));
+
+fn baseline() -> Result<&'static Flown, Failure> {
+    shared(&BASELINE)
+}
+
+fn with_near_wake(deg: f64) -> Result<&'static Flown, Failure> {
+    shared(if deg > 180.0 { &LONG } else { &SHORT })
+}
+
+fn level() -> Result<&'static Flown, Failure> {
+    shared(&LEVEL)
+}
+
+fn climb() -> Result<&'static Flown, Failure> {
+    shared(&CLIMB)
+}
+
+/// Frequencies per rev of the blade: kind, number from 1, value.
+const FREQUENCIES: [(&str, usize, f64); 6] = [
+    ("flap", 1, 1.125),
+    ("flap", 2, 2.835),
+    ("flap", 3, 5.168),
+    ("lag", 1, 0.782),
+    ("lag", 2, 4.592),
+    ("torsion", 1, 3.845),
+];
+
+fn frequencies() -> Result<f64, Failure> {
+    let case = shipped_case("hart_ii_bl.ron")?.case;
+    let found = rotating_modes(&case, &ModesQuestion::default())?.modes;
+    let mut worst = 0.0_f64;
+    for (kind, number, wanted) in FREQUENCIES {
+        let mode = found.iter().filter(|mode| mode.kind == kind).nth(number - 1);
+        let per_rev = mode.and_then(|mode| mode.per_rev);
+        let per_rev = per_rev.ok_or_else(|| too_few("modes", found.len(), number))?;
+        worst = worst.max(100.0 * (per_rev / wanted - 1.0).abs());
+    }
+    Ok(worst)
+}
+
+/// How two curves agree, their means removed.
+struct Agreement {
+    correlation: f64,
+    rms: f64,
+}
+
+/// Of the harmonics from `first` to [`MOST`], by azimuth.
+fn agreement(own: &HarmonicSeries, measured: &HarmonicSeries, first: usize) -> Agreement {
+    let part = |series: &HarmonicSeries, psi: f64| -> f64 {
+        (first..=MOST)
+            .map(|n| {
+                let Harmonic { cosine, sine } = series.harmonic(n);
+                let angle = n as f64 * psi;
+                cosine * angle.cos() + sine * angle.sin()
+            })
+            .sum()
+    };
+    let [mut xx, mut yy, mut xy, mut square] = [0.0; 4];
+    for psi in uniform_azimuths_rad(AZIMUTHS) {
+        let (x, y) = (part(own, psi), part(measured, psi));
+        xx += x * x;
+        yy += y * y;
+        xy += x * y;
+        square += (x - y) * (x - y);
+    }
+    Agreement { correlation: xy / (xx * yy).sqrt(), rms: (square / AZIMUTHS as f64).sqrt() }
+}
+
+fn measured(file: &str, case: &str, columns: [&str; 2]) -> Result<HarmonicSeries, Failure> {
+    let table = Table::read(file)?;
+    let mut series = HarmonicSeries::zero(MOST);
+    for n in 1..=MOST {
+        let row = table.row(["case", "per_rev"], [case, &n.to_string()])?;
+        let [cosine, sine] = [row.number(columns[0])?, row.number(columns[1])?];
+        series.set_harmonic(n, Harmonic { cosine, sine });
+    }
+    Ok(series)
+}
+
+fn airload(flown: &Flown) -> Result<Agreement, Failure> {
+    let values: Vec<f64> = flown.station.loads.iter().map(|at| at.normal_m2).collect();
+    let own = HarmonicSeries::from_uniform_samples(&values, MOST)?;
+    let file = "../measured/hart_ii/airloads_087r_harmonics.csv";
+    Ok(agreement(&own, &measured(file, "BL", ["cn_m2_cos", "cn_m2_sin"])?, 1))
+}
+
+fn section(flown: &Flown, case: &str, first: usize) -> Result<Agreement, Failure> {
+    let values: Vec<f64> = flown.station.loads.iter().map(|at| at.normal).collect();
+    let own = HarmonicSeries::from_uniform_samples(&values, MOST)?;
+    let file = "../measured/helinovi/cn_087r_harmonics.csv";
+    Ok(agreement(&own, &measured(file, case, ["cn_cos", "cn_sin"])?, first))
+}
+
+/// RMS distance of a motion of the tip from that measured in BL.
+fn tip(
+    own: &[TipMotion],
+    [file, column]: [&str; 2],
+    value: fn(&TipMotion) -> f64,
+) -> Result<f64, Failure> {
+    let values: Vec<f64> = own.iter().map(value).collect();
+    let own = HarmonicSeries::from_uniform_samples(&values, 20)?;
+    let table = Table::read(&format!("../measured/hart_ii/{file}"))?;
+    let (mut square, mut count) = (0.0, 0);
+    for row in table.rows() {
+        if row.text("case")? == "BL" {
+            let psi = row.number("azimuth_deg")?.to_radians();
+            square += (own.value(psi) - row.number(column)?).powi(2);
+            count += 1;
+        }
+    }
+    if count == 0 { Err(too_few(column, count, 1)) } else { Ok((square / count as f64).sqrt()) }
+}
+
+/// A measured vortex farther along the flight path than this from any computed one, R, is that of another turn.
+const SAME_VORTEX: f64 = 0.12;
+
+/// Vertical rms distance of measured vortex centres from where the tip vortices of the wake cross the same vertical plane
+/// along the flight, percent of R.
+fn vertical_distance(flown: &Flown) -> Result<f64, Failure> {
+    let vortex = &flown.tip_vortex;
+    let table = Table::read("../measured/hart_ii/vortex_centres.csv")?;
+    let (mut square, mut count) = (0.0, 0);
+    for row in table.rows() {
+        if row.text("case")? != "BL" {
+            continue;
+        }
+        let [x, y, z] = [row.number("x_m")?, row.number("y_m")?, row.number("z_m")?]
+            .map(|c| c / flown.radius_m);
+        let azimuth = row.number("azimuth_deg")?;
+        let mut nearest: Option<[f64; 2]> = None;
+        // those of the four blades when the first is at that azimuth
+        let step = 360.0 / vortex.len() as f64;
+        let is_seen = |i: usize| {
+            let quarters = (i as f64 * step - azimuth) / 90.0;
+            (quarters - quarters.round()).abs() * 90.0 < 0.5 * step
+        };
+        for nodes in (0..vortex.len()).filter(|i| is_seen(*i)).map(|i| &vortex[i]) {
+            for pair in nodes.windows(2) {
+                let [a, b] = [pair[0], pair[1]];
+                if (a[1] - y) * (b[1] - y) < 0.0 {
+                    let t = (y - a[1]) / (b[1] - a[1]);
+                    let [along, up] = [0, 2].map(|c| a[c] + t * (b[c] - a[c]));
+                    if nearest.is_none_or(|[best, _]| (along - x).abs() < (best - x).abs()) {
+                        nearest = Some([along, up]);
+                    }
+                }
+            }
+        }
+        if let Some([_, up]) = nearest.filter(|[along, _]| (along - x).abs() <= SAME_VORTEX) {
+            square += (up - z).powi(2);
+            count += 1;
+        }
+    }
+    if count < 40 {
+        return Err(too_few("vortex centres", count, 40));
+    }
+    Ok(100.0 * (square / count as f64).sqrt())
+}
