@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::sync::Arc;
 
 use crate::regress::SweepError;
+use crate::wake_refinement::PAPER_CHORD;
 use preisach_dyn::ActuatorModel;
 use rotor_base::wrap_degrees;
 use rotor_study::{Drives, TrimmedRotor, control_set};
@@ -27,8 +28,8 @@ const ROWS: [Row; 20] = [
     ("steps of 15 deg", |w| w.azimuths = Some(24), None),
     ("steps of 7.5 deg", |w| w.azimuths = Some(48), None),
     ("steps of 5 deg, 12 time points", |w| w.azimuths = Some(72), Some(12)),
-    ("near core x 0.5", |w| w.near_core_r = Some(0.0275), None),
-    ("near core x 2", |w| w.near_core_r = Some(0.11), None),
+    ("near core x 0.5", |w| w.near_core_r = Some(0.5 * PAPER_CHORD), None),
+    ("near core x 2", |w| w.near_core_r = Some(2.0 * PAPER_CHORD), None),
     ("near wake 30 deg", |w| w.near_wake_deg = Some(30.0), None),
     ("near wake 60 deg", |w| w.near_wake_deg = Some(60.0), None),
     ("near wake 90 deg", |w| w.near_wake_deg = Some(90.0), None),

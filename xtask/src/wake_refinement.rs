@@ -22,7 +22,7 @@ use trim::{
 pub(crate) type PaperChange = fn(&mut WakeTrimSettings, &mut Discretisation);
 
 /// Core of the near wake of the paper's rotor, R: its chord.
-const PAPER_CHORD: f64 = 0.055;
+pub(crate) const PAPER_CHORD: f64 = 0.055;
 
 /// What is changed, and how, from the defaults of a case.
 const PAPER_ROWS: [(&str, PaperChange); 31] = [

@@ -51,6 +51,15 @@ impl Entire {
     }
 }
 
+/// Hankel functions of the second kind, orders 0 and 1, of a positive argument.
+fn hankel(k: f64) -> [Complex64; 2] {
+    let e = Entire::at(k);
+    let log = 2.0 / PI * (0.5 * k).ln();
+    let h0 = Complex64::new(e.j0, -(log * e.j0 + e.y0));
+    let h1 = Complex64::new(e.j1, -(log * e.j1 - 2.0 / (PI * k) + e.y1));
+    [h0, h1]
+}
+
 /// Theodorsen's function `C(k) = H1 / (H1 + i H0)`, Hankel functions of the second kind.
 ///
 /// `k` is the reduced frequency `omega c / (2 U)`, above 0 and up to 20; at 0 and below the limit 1.
@@ -60,10 +69,7 @@ pub fn theodorsen_function(k: f64) -> Complex64 {
     if k <= 0.0 {
         return Complex64::ONE;
     }
-    let e = Entire::at(k);
-    let log = 2.0 / PI * (0.5 * k).ln();
-    let h0 = Complex64::new(e.j0, -(log * e.j0 + e.y0));
-    let h1 = Complex64::new(e.j1, -(log * e.j1 - 2.0 / (PI * k) + e.y1));
+    let [h0, h1] = hankel(k);
     h1 / (h1 + Complex64::I * h0)
 }
 
@@ -80,10 +86,7 @@ pub fn bound_circulation(k: f64) -> Complex64 {
     if k <= 0.0 {
         return Complex64::ONE;
     }
-    let e = Entire::at(k);
-    let log = 2.0 / PI * (0.5 * k).ln();
-    let h0 = Complex64::new(e.j0, -(log * e.j0 + e.y0));
-    let h1 = Complex64::new(e.j1, -(log * e.j1 - 2.0 / (PI * k) + e.y1));
+    let [h0, h1] = hankel(k);
     let sum = -0.5 * PI * (h1 + Complex64::I * h0);
     Complex64::from_polar(1.0, -k) / (Complex64::I * k * sum)
 }

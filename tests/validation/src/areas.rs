@@ -346,7 +346,9 @@ pub const AREAS: &[Area] = &[
             "V-MEAS-02",
             "V-MEAS-03",
             "V-MEAS-04",
+            "V-MEAS-13",
             "V-MEAS-05",
+            "V-MEAS-14",
             "V-MEAS-06",
             "V-MEAS-07",
             "V-MEAS-08",
@@ -354,6 +356,8 @@ pub const AREAS: &[Area] = &[
             "V-MEAS-10",
             "V-MEAS-11",
             "V-MEAS-12",
+            "V-MEAS-15",
+            "V-MEAS-16",
         ],
     },
 ];

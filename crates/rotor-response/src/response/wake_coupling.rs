@@ -169,7 +169,8 @@ mod tests {
         let (azimuths, cutout) = (24, solver.rotor().model().root_cutout);
         let panels = WakeRotor::uniform(4, cutout, 12).unwrap();
         let even = InflowMap::new(&panels, vec![0.01; azimuths * panels.panels()]).unwrap();
-        let even = InducedInflow::Map(even);
+        let across = even.clone().with_in_plane(vec![0.02; azimuths * panels.panels()]).unwrap();
+        let [even, across] = [even, across].map(InducedInflow::Map);
         let model = LinearInflow::Prescribed { induced_inflow: 0.01 };
         let samples = solver.solve(&condition, &model, None).unwrap().orbit.sample(&solver.time);
         let of = |inflow: &InducedInflow| {
@@ -180,6 +181,10 @@ mod tests {
         };
         let slope = solver.circulation_slope(&panels, azimuths);
         let rest = of(&even);
+        // air from the leading edge makes the blade faster: of U th - U_P, a third or less of U th, U th grows by 2 %
+        let at = 6 * panels.panels() + 10;
+        let grown = of(&across).values()[at] / rest.values()[at] - 1.0;
+        assert!((0.04..0.15).contains(&grown), "{grown}");
         // the last where the flow turns round, which hardly answers, and whose sense is that of a small speed put in
         // its place
         let places = [(3, 2, 0.01), (10, 11, 0.01), (17, 6, 0.03), (6, 8, 0.01), (18, 1, 0.03)];

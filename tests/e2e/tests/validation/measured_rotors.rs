@@ -3,9 +3,9 @@
 use std::sync::LazyLock;
 
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
-use rotor_response::{StationAirloads, TipMotion};
+use rotor_response::{SectionAirload, StationAirloads, TipMotion};
 use rotor_study::{ModesQuestion, TrimmedRotor, rotating_modes};
-use sim_driver::case::{FreeWakeValues, InflowChoice, shipped_case};
+use sim_driver::case::{Case, FreeWakeValues, InflowChoice, shipped_case};
 use validation::{Check, Failure, Table, row, shared, too_few};
 
 const HART: &str = "measured: HART II, fixtures/measured/hart_ii";
@@ -21,18 +21,30 @@ pub(crate) const ROWS: &[Check] = &[
     .at_most(1.5, frequencies),
     row("V-MEAS-02", "HART II, baseline: C_n M^2 at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HART)
-        .at_least(0.80, || Ok(airload(baseline()?)?.correlation)),
+        .at_least(0.80, || Ok(airload(&CN_M2, baseline()?, "BL", 1)?.correlation)),
     row("V-MEAS-03", "the same: rms distance", "-")
         .against(HART)
-        .at_most(0.010, || Ok(airload(baseline()?)?.rms)),
+        .at_most(0.010, || Ok(airload(&CN_M2, baseline()?, "BL", 1)?.rms)),
     row("V-MEAS-04", "the same, near wake of 360 in place of 180 deg: correlation", "-")
         .against(HART)
-        .near(0.654, 0.03, || Ok(airload(with_near_wake(360.0)?)?.correlation)),
+        .near(0.654, 0.03, || descent(360.0, 36)),
+    row("V-MEAS-13", "the same, near wake of 90 deg: correlation", "-").against(HART).near(
+        0.79,
+        0.03,
+        || descent(90.0, 36),
+    ),
     row("V-MEAS-05", "the same, near wake of 30 deg: correlation", "-").against(HART).near(
         0.44,
         0.05,
-        || Ok(airload(with_near_wake(30.0)?)?.correlation),
+        || descent(30.0, 36),
     ),
+    row(
+        "V-MEAS-14",
+        "the same, near wake of 180 deg, steps of 5 in place of 10 deg: correlation",
+        "-",
+    )
+    .against(HART)
+    .near(0.73, 0.03, || descent(180.0, 72)),
     row("V-MEAS-06", "the same: tip deflection, rms distance; shown, the bar is 0.35", "% R")
         .against(HART)
         .near(0.41, 0.03, || tip(&baseline()?.tip, TIP_FLAP, |at| 100.0 * at.flap)),
@@ -52,18 +64,30 @@ pub(crate) const ROWS: &[Check] = &[
     .near(3.3, 0.3, || vertical_distance(baseline()?)),
     row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
-        .at_least(0.85, || Ok(section(level()?, "ID2", 1)?.correlation)),
+        .at_least(0.85, || Ok(airload(&CN, level()?, "ID2", 1)?.correlation)),
     row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-")
         .against(HELINOVI)
-        .near(0.42, 0.05, || Ok(section(level()?, "ID2", 2)?.correlation)),
+        .near(0.42, 0.05, || Ok(airload(&CN, level()?, "ID2", 2)?.correlation)),
     row("V-MEAS-11", "HeliNOVI, climb: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
-        .at_least(0.85, || Ok(section(climb()?, "ID1", 1)?.correlation)),
+        .at_least(0.85, || Ok(airload(&CN, climb()?, "ID1", 1)?.correlation)),
     row("V-MEAS-12", "the same, 2 to 6/rev; shown", "-").against(HELINOVI).near(
         0.565,
         0.05,
-        || Ok(section(climb()?, "ID1", 2)?.correlation),
+        || Ok(airload(&CN, climb()?, "ID1", 2)?.correlation),
     ),
+    row("V-MEAS-15", "level flight, 2 to 6/rev, near wake of 360 in place of 180 deg; shown", "-")
+        .against(HELINOVI)
+        .near(0.32, 0.05, || {
+            let flown = flown("helinovi_level.ron", |case| in_wake(case, 360.0, 36))?;
+            Ok(airload(&CN, &flown, "ID2", 2)?.correlation)
+        }),
+    row("V-MEAS-16", "climb, 2 to 6/rev, near wake of 360 in place of 180 deg; shown", "-")
+        .against(HELINOVI)
+        .near(0.765, 0.05, || {
+            let flown = flown("helinovi_climb.ron", |case| in_wake(case, 360.0, 36))?;
+            Ok(airload(&CN, &flown, "ID1", 2)?.correlation)
+        }),
 ];
 
 /// Harmonics that are compared.
@@ -82,12 +106,9 @@ struct Flown {
     tip_vortex: Vec<Vec<[f64; 3]>>,
 }
 
-fn flown(case: &str, near_wake_deg: Option<f64>) -> Result<Flown, Failure> {
+fn flown(case: &str, change: impl Fn(&mut Case)) -> Result<Flown, Failure> {
     let mut case = shipped_case(case)?.case;
-    if near_wake_deg.is_some() {
-        case.inflow.model =
-            InflowChoice::FreeWake(FreeWakeValues { near_wake_deg, ..FreeWakeValues::default() });
-    }
+    change(&mut case);
     let rotor = TrimmedRotor::new(&case, None)?;
     let (stations, tip) = rotor.airloads(&[STATION], case.tip_mach(), AZIMUTHS)?;
     let station = stations.into_iter().next().ok_or_else(|| too_few("stations", 0, 1))?;
@@ -96,22 +117,34 @@ fn flown(case: &str, near_wake_deg: Option<f64>) -> Result<Flown, Failure> {
     Ok(Flown { station, tip, radius_m: case.rotor.radius_m, tip_vortex })
 }
 
-static BASELINE: LazyLock<Result<Flown, Failure>> = LazyLock::new(|| flown("hart_ii_bl.ron", None));
-static LONG: LazyLock<Result<Flown, Failure>> =
-    LazyLock::new(|| flown("hart_ii_bl.ron", Some(360.0)));
-static SHORT: LazyLock<Result<Flown, Failure>> =
-    LazyLock::new(|| flown("hart_ii_bl.ron", Some(30.0)));
+/// Gives a case a free wake of another near wake and number of steps, and as many time points as these need.
+fn in_wake(case: &mut Case, near_wake_deg: f64, steps: usize) {
+    let wake = FreeWakeValues {
+        near_wake_deg: Some(near_wake_deg),
+        azimuths: Some(steps),
+        ..FreeWakeValues::default()
+    };
+    case.inflow.model = InflowChoice::FreeWake(wake);
+    if steps > 48 {
+        case.response.time_gauss_points = 12;
+    }
+}
+
+/// Correlation of `C_n M^2` in descent with another wake.
+fn descent(near_wake_deg: f64, steps: usize) -> Result<f64, Failure> {
+    let flown = flown("hart_ii_bl.ron", |case| in_wake(case, near_wake_deg, steps))?;
+    Ok(airload(&CN_M2, &flown, "BL", 1)?.correlation)
+}
+
+static BASELINE: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("hart_ii_bl.ron", |_| ()));
 static LEVEL: LazyLock<Result<Flown, Failure>> =
-    LazyLock::new(|| flown("helinovi_level.ron", None));
+    LazyLock::new(|| flown("helinovi_level.ron", |_| ()));
 static CLIMB: LazyLock<Result<Flown, Failure>> =
-    LazyLock::new(|| flown("helinovi_climb.ron", None));
+    LazyLock::new(|| flown("helinovi_climb.ron", |_| ()));
 
 fn baseline() -> Result<&'static Flown, Failure> {
     shared(&BASELINE)
-}
-
-fn with_near_wake(deg: f64) -> Result<&'static Flown, Failure> {
-    shared(if deg > 180.0 { &LONG } else { &SHORT })
 }
 
 fn level() -> Result<&'static Flown, Failure> {
@@ -184,18 +217,29 @@ fn measured(file: &str, case: &str, columns: [&str; 2]) -> Result<HarmonicSeries
     Ok(series)
 }
 
-fn airload(flown: &Flown) -> Result<Agreement, Failure> {
-    let values: Vec<f64> = flown.station.loads.iter().map(|at| at.normal_m2).collect();
-    let own = HarmonicSeries::from_uniform_samples(&values, MOST)?;
-    let file = "../measured/hart_ii/airloads_087r_harmonics.csv";
-    Ok(agreement(&own, &measured(file, "BL", ["cn_m2_cos", "cn_m2_sin"])?, 1))
+/// A measured airload at 0.87 R, and the computed one beside it.
+struct Airload {
+    file: &'static str,
+    columns: [&'static str; 2],
+    value: fn(&SectionAirload) -> f64,
 }
 
-fn section(flown: &Flown, case: &str, first: usize) -> Result<Agreement, Failure> {
-    let values: Vec<f64> = flown.station.loads.iter().map(|at| at.normal).collect();
+const CN_M2: Airload = Airload {
+    file: "../measured/hart_ii/airloads_087r_harmonics.csv",
+    columns: ["cn_m2_cos", "cn_m2_sin"],
+    value: |at| at.normal_m2,
+};
+const CN: Airload = Airload {
+    file: "../measured/helinovi/cn_087r_harmonics.csv",
+    columns: ["cn_cos", "cn_sin"],
+    value: |at| at.normal,
+};
+
+/// Agreement of an airload with a measured case from a harmonic on.
+fn airload(of: &Airload, flown: &Flown, case: &str, first: usize) -> Result<Agreement, Failure> {
+    let values: Vec<f64> = flown.station.loads.iter().map(of.value).collect();
     let own = HarmonicSeries::from_uniform_samples(&values, MOST)?;
-    let file = "../measured/helinovi/cn_087r_harmonics.csv";
-    Ok(agreement(&own, &measured(file, case, ["cn_cos", "cn_sin"])?, first))
+    Ok(agreement(&own, &measured(of.file, case, of.columns)?, first))
 }
 
 /// RMS distance of a motion of the tip from that measured in BL.
