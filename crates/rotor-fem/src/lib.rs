@@ -57,7 +57,7 @@ pub use periodic::acceleration::Anderson;
 pub use periodic::error::PeriodicError;
 pub use periodic::linear_response::LinearResponse;
 pub use periodic::orbit_memory::OrbitMemory;
-pub use periodic::solver::{PeriodicSettings, PeriodicSolution, PeriodicSolver};
+pub use periodic::solver::{OrbitBound, PeriodicSettings, PeriodicSolution, PeriodicSolver};
 pub use periodic::system::{LocalTangent, PeriodicSystem};
 pub use periodic::time_elements::{Orbit, OrbitSamples, TimeElements};
 pub use stability::floquet::{Floquet, FloquetMode};

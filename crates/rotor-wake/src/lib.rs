@@ -60,8 +60,9 @@ pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
     CirculationSlope, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
-    FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, LineInduction, NearWakeMotion,
-    ReleasePoint, SegmentState, ShedVorticity, WakeFilament, WakeMarch, WakeMethod, WakeSymmetry,
+    FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, LineInduction, MotionSlope,
+    NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, WakeFilament, WakeMarch, WakeMethod,
+    WakeSymmetry,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -120,7 +120,7 @@ impl Coupling<'_> {
             let mean = momentum_inflow(&start.flight, start.rotor.thrust_coefficient)?;
             FreeWake::undistorted(panels.clone(), settings, start.flight, mean, lines)?
         };
-        let slope = self.solver.circulation_slope(panels, azimuths);
+        let slope = self.solver.circulation_slope(&start.controls, panels, azimuths);
         let frozen = FrozenWake::new(wake.line_induction(&circulation)?, &circulation, &slope)?;
         self.in_still_wake((wake, frozen), circulation, start)
     }

@@ -97,6 +97,15 @@ pub struct PeriodicSolver {
     pub(crate) factorisation: Option<Arc<Factorisation>>,
 }
 
+/// How far an orbit on the way to another one is solved.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrbitBound {
+    /// Largest weak residual, generalised force.
+    pub residual: f64,
+    /// Largest weak residual over that of the start, if it is less; infinite: whatever the start leaves.
+    pub of_first: f64,
+}
+
 impl PeriodicSolver {
     /// A solver on a time mesh.
     ///
@@ -157,7 +166,8 @@ impl PeriodicSolver {
         system: &S,
         start: &Orbit,
     ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
-        self.solve_to(self.settings.tolerance, system, start)
+        let bound = OrbitBound { residual: self.settings.tolerance, of_first: f64::INFINITY };
+        self.solve_to(bound, system, start)
     }
 
     /// The same with a residual bound of its own, for an orbit that is on the way to another one.
@@ -166,13 +176,15 @@ impl PeriodicSolver {
     /// As [`Self::solve`].
     pub fn solve_to<S: PeriodicSystem>(
         &mut self,
-        tolerance: f64,
+        bound: OrbitBound,
         system: &S,
         start: &Orbit,
     ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
         self.check(system, start)?;
         let work = &mut S::Work::default();
         let mut state = self.evaluate(system, work, start.clone(), (0, start))?;
+        let of_first = (bound.of_first * state.norm).max(self.settings.tolerance);
+        let tolerance = bound.residual.min(of_first);
         let mut history = vec![state.norm];
         let mut best = (state.norm, state.orbit.clone());
         let mut mixing = Anderson::new(self.settings.mixing_depth);

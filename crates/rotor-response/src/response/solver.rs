@@ -14,7 +14,8 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_fem::{
-    Anderson, Orbit, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver, TimeElements,
+    Anderson, Orbit, OrbitBound, OrbitSamples, PeriodicError, PeriodicSettings, PeriodicSolver,
+    TimeElements,
 };
 use rotor_wake::{InducedInflow, InflowModel, RotorLoading};
 use std::sync::Arc;
@@ -27,7 +28,9 @@ const REFRESH_CONTRACTION: f64 = 0.8;
 const INFLOW_STEPS_KEPT: usize = 16;
 /// Residual of the orbit over the last change of the inflow, to which it is solved while the inflow is still on its
 /// way: a thrust that is off by as much moves the inflow by a tenth of it.
-const ORBIT_SHARE: f64 = 0.01;
+const ORBIT_SHARE: f64 = 0.003;
+/// Residual of the first orbit over that of the start: what it leaves open would mislead the steps of the inflow.
+const ORBIT_AT_FIRST: f64 = 0.03;
 /// Residual to which it is solved before any change of the inflow is known.
 const FIRST_ORBIT: f64 = 1e-6;
 /// Change of the inflow over its tolerance from which the next orbit is likely to be the last.
@@ -219,7 +222,9 @@ impl RotorSolver {
             start.map_or(0.0, |s| s.thrust_coefficient - self.lift_coefficient(&s.lifting));
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
-            let solved = self.solver.solve_to(orbit_tolerance, &system, &orbit);
+            let of_first = if inflow_iteration == 1 { ORBIT_AT_FIRST } else { f64::INFINITY };
+            let bound = OrbitBound { residual: orbit_tolerance, of_first };
+            let solved = self.solver.solve_to(bound, &system, &orbit);
             let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;
             factorisations += solution.factorisations;

@@ -5,14 +5,16 @@ use crate::response::wake_loading::{
     between, circulation, of_harmonics, panel_means, resolved_harmonics, shares,
 };
 use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
-use rotor_wake::{BladeLines, CirculationMap, CirculationSlope, WakeRotor};
+use rotor_base::{HarmonicSeries, harmonic_waves, uniform_azimuths_rad};
+use rotor_wake::{BladeLines, CirculationMap, CirculationSlope, MotionSlope, WakeRotor};
 use std::collections::BTreeMap;
 
 /// Speed across the chord that turns the sense of the circulation, tip speed: about the inflow.
 const SMALL_SPEED: f64 = 0.04;
+/// Harmonics of the flap bending that answers to the inflow.
+const MOVING_HARMONICS: usize = 5;
 
 impl RotorSolver {
     /// Bound circulation of a solution on the panels and azimuths of a wake.
@@ -28,14 +30,19 @@ impl RotorSolver {
         circulation(self.rotor(), &self.time, &solution.lifting, wake_rotor, azimuths)
     }
 
-    /// How the circulation at the panels and azimuths of a wake answers to the inflow there while the blades stay as
-    /// they are: prompt lift and lags of the attached sections in the speed of the rigid blade, over tables too.
+    /// How the circulation at the panels and azimuths of a wake answers to the inflow there: prompt lift and lags of the attached sections in the speed of the rigid blade, over tables too.
     ///
     /// ```text
     /// dGamma = -(1/2) c s K dlambda,      K = direct + sum over channels of gain P input      s = U / hypot(U, .04)
     /// ```
-    /// between the ways in which inflow is read at stations and points and circulation at panels and azimuths.
-    pub fn circulation_slope(&self, wake_rotor: &WakeRotor, azimuths: usize) -> CirculationSlope {
+    /// between the ways in which inflow is read at stations and points and circulation at panels and azimuths. The blade
+    /// answers by its flap bending ([`Self::motion_slope`]).
+    pub fn circulation_slope(
+        &self,
+        controls: &Controls,
+        wake_rotor: &WakeRotor,
+        azimuths: usize,
+    ) -> CirculationSlope {
         let (blade, time) = (self.rotor().blade(), &self.time);
         let first = self.air.first_station;
         let (x, air) = (&blade.grid().x()[first..], &blade.air[first..]);
@@ -74,7 +81,78 @@ impl RotorSolver {
             }
         }
         let blocks = blocks.into_iter().map(|((from, to), block)| (from, to, block));
-        CirculationSlope { blocks: blocks.collect() }
+        let motion = self.motion_slope(&slopes, &panels, &psi);
+        let twists: Vec<f64> =
+            panels.iter().map(|r| between(blade.grid().x(), &blade.twist, *r)).collect();
+        let roots = psi.iter().map(|psi| controls.root_pitch(*psi).angle_rad);
+        let pitch_rad = roots.flat_map(|root| twists.iter().map(move |twist| root + twist));
+        CirculationSlope { pitch_rad: pitch_rad.collect(), blocks: blocks.collect(), motion }
+    }
+
+    /// How the flap bending of a blade answers to the inflow at the panels and azimuths of a wake, by its harmonics, where
+    /// the circulation of the stations answers by `slopes`; none where the blade has no periodic answer.
+    ///
+    /// ```text
+    /// m (nu^2 - n^2) q_n = ( integral phi rho U Gamma dr )_n,      dlambda felt = phi q' + mu cos psi phi' q
+    /// ```
+    fn motion_slope(
+        &self,
+        slopes: &[DMatrix<f64>],
+        panels: &[f64],
+        psi: &[f64],
+    ) -> Option<MotionSlope> {
+        let (blade, azimuths) = (self.rotor().blade(), psi.len());
+        let first = self.air.first_station;
+        let (x, weight, air) = (blade.grid().x(), blade.grid().weight(), &blade.air);
+        let most = MOVING_HARMONICS.min((azimuths - 1) / 2);
+        let waves: Vec<Vec<f64>> =
+            psi.iter().map(|psi| harmonic_waves(*psi, most).collect()).collect();
+        let of_mode = 1 + 2 * most;
+        let count = of_mode * blade.flap.value.len();
+        // inflow that a coordinate makes where the shape has a value and a slope
+        let felt = |i: usize, wave: usize, value: f64, slope: f64| {
+            let n = wave.div_ceil(2) as f64;
+            let rate = match wave {
+                0 => 0.0,
+                cosine if cosine % 2 == 1 => -n * waves[i][wave + 1],
+                _ => n * waves[i][wave - 1],
+            };
+            value * rate + self.advance_ratio * psi[i].cos() * slope * waves[i][wave]
+        };
+        let felt_by = |i: usize, c: usize, at: &dyn Fn(&[f64]) -> f64| {
+            let (value, slope) = (&blade.flap.value[c / of_mode], &blade.flap.slope[c / of_mode]);
+            felt(i, c % of_mode, at(value), at(slope))
+        };
+        let mut stiffness = DMatrix::from_diagonal(&DVector::from_fn(count, |c, _| {
+            let (mode, n) = (c / of_mode, (c % of_mode).div_ceil(2) as f64);
+            blade.modal_masses[mode] * (blade.frequencies[mode].powi(2) - n * n)
+        }));
+        let mut read = DMatrix::zeros(count, azimuths * panels.len());
+        for (s, slope) in slopes.iter().enumerate() {
+            let at = first + s;
+            let lift = weight[at] * air[at].density_chord / air[at].chord;
+            let projected = DMatrix::from_fn(count, azimuths, |c, i| {
+                let wave = c % of_mode;
+                let mean = if wave == 0 { 1.0 } else { 2.0 } / azimuths as f64;
+                let speed = x[at] + self.advance_ratio * psi[i].sin();
+                mean * waves[i][wave] * blade.flap.value[c / of_mode][at] * lift * speed
+            });
+            let answer = projected * slope;
+            let felt = DMatrix::from_fn(azimuths, count, |i, c| felt_by(i, c, &|shape| shape[at]));
+            stiffness -= &answer * felt;
+            for (to, share) in shares(panels, x[at]) {
+                for (i, column) in answer.column_iter().enumerate() {
+                    read.column_mut(i * panels.len() + to).axpy(share, &column, 1.0);
+                }
+            }
+        }
+        let coordinates = stiffness.lu().solve(&read)?;
+        let inflow = DMatrix::from_fn(azimuths * panels.len(), count, |row, c| {
+            let (i, panel) = (row / panels.len(), row % panels.len());
+            felt_by(i, c, &|shape| between(x, shape, panels[panel]))
+        });
+        let is_finite = coordinates.iter().all(|value| value.is_finite());
+        is_finite.then_some(MotionSlope { coordinates, inflow })
     }
 
     /// The lifting lines of blades deflected by modal motions ([`RotorSolution::modal`]) under pitch controls: quarter
@@ -123,7 +201,9 @@ mod tests {
     use super::*;
     use crate::{Condition, Discretisation, ResponseTolerances, Rotor, RotorModel};
     use rotor_fem::{BladeProperties, BladeSpec, TimeElements};
-    use rotor_wake::{FlightState, InducedInflow, InflowMap, LinearInflow};
+    use rotor_wake::{
+        FlightState, InducedInflow, InflowMap, InflowModel, LinearInflow, RotorLoading, WakeError,
+    };
     use std::sync::Arc;
 
     /// Largest amplitude that a unit harmonic `n` leaves at other harmonics up to `limit`, at the points of eight time
@@ -152,6 +232,16 @@ mod tests {
         assert!(beyond > 0.5, "{beyond}");
     }
 
+    /// The paper's rotor in fast flight, its flaps at rest.
+    fn forward() -> Condition {
+        Condition {
+            flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
+            controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
+            flap_angles_rad: vec![HarmonicSeries::zero(0); 2],
+            bank_rad: 0.0,
+        }
+    }
+
     /// The closed slope of the circulation against differences, the motion of the blade held; a slope without lags is
     /// far off.
     #[test]
@@ -160,12 +250,7 @@ mod tests {
         let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default());
         let rotor = Arc::new(rotor.unwrap());
         let mut solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default()).unwrap();
-        let condition = Condition {
-            flight: FlightState { advance_ratio: 0.3, shaft_tilt_rad: 0.08 },
-            controls: Controls { theta0_rad: 0.14, theta1c_rad: 0.02, theta1s_rad: -0.07 },
-            flap_angles_rad: vec![HarmonicSeries::zero(0); 2],
-            bank_rad: 0.0,
-        };
+        let condition = forward();
         let (azimuths, cutout) = (24, solver.rotor().model().root_cutout);
         let panels = WakeRotor::uniform(4, cutout, 12).unwrap();
         let even = InflowMap::new(&panels, vec![0.01; azimuths * panels.panels()]).unwrap();
@@ -179,7 +264,7 @@ mod tests {
             let lifting = revolution.lifting();
             circulation(&solver.rotor, &solver.time, &lifting, &panels, azimuths).unwrap()
         };
-        let slope = solver.circulation_slope(&panels, azimuths);
+        let slope = solver.circulation_slope(&condition.controls, &panels, azimuths);
         let rest = of(&even);
         // air from the leading edge makes the blade faster: of U th - U_P, a third or less of U th, U th grows by 2 %
         let at = 6 * panels.panels() + 10;
@@ -205,6 +290,74 @@ mod tests {
             }
             println!("azimuth {i}, panel {to}: {:.1e} of {whole:.3}", off / whole);
             assert!(off <= bound * whole.max(0.07), "{off} of {whole}");
+        }
+    }
+
+    /// An inflow that stays as it is.
+    #[derive(Debug)]
+    struct Held(InducedInflow);
+
+    impl InflowModel for Held {
+        fn name(&self) -> &'static str {
+            "held"
+        }
+
+        fn induced(&self, _: &FlightState, _: &RotorLoading) -> Result<InducedInflow, WakeError> {
+            Ok(self.0.clone())
+        }
+    }
+
+    /// The closed slope of the circulation against differences, the blade answering: without its motion it is far off. Along
+    /// the disk it leaves out what the speed does to the lift of the circulation that is there; with no pitch it would be off
+    /// by all.
+    #[test]
+    fn the_slope_of_the_circulation_knows_how_the_blade_answers() {
+        let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+        let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default());
+        let rotor = Arc::new(rotor.unwrap());
+        let solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default()).unwrap();
+        let condition = forward();
+        let (azimuths, cutout) = (24, solver.rotor().model().root_cutout);
+        let panels = WakeRotor::uniform(4, cutout, 12).unwrap();
+        let (count, psi) = (panels.panels(), uniform_azimuths_rad(azimuths));
+        let map = |of: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            (0..azimuths * count).map(|at| of(at / count, at % count)).collect()
+        };
+        let even = InflowMap::new(&panels, map(&|_, _| 0.02)).unwrap();
+        let even = InducedInflow::Map(even.with_in_plane(map(&|_, _| 0.0)).unwrap());
+        let circulation = |inflow: InducedInflow| {
+            let found = solver.clone().solve(&condition, &Held(inflow), None).unwrap();
+            DVector::from_column_slice(
+                solver.circulation(&found, &panels, azimuths).unwrap().values(),
+            )
+        };
+        let rest = circulation(even.clone());
+        let slope = solver.circulation_slope(&condition.controls, &panels, azimuths);
+        let still = CirculationSlope { motion: None, ..slope.clone() };
+        let r = panels.stations();
+        let wave = |i: usize, s: usize, n: f64| r[s] * (n * psi[i]).cos();
+        let none = vec![0.0; azimuths * count];
+        // once and twice a revolution down through the disk, and along it
+        let changes = [
+            (map(&|i, s| wave(i, s, 1.0)), none.clone(), 0.16),
+            (map(&|i, s| wave(i, s, 2.0)), none.clone(), 0.16),
+            (none, map(&|i, s| wave(i, s, 1.0)), 0.7),
+        ];
+        for (down, along, bound) in changes {
+            let step = 1e-4;
+            let mut moved = even.parameters();
+            for (value, change) in moved.iter_mut().zip(down.iter().chain(&along)) {
+                *value += step * change;
+            }
+            let exact = (circulation(even.with_parameters(&moved).unwrap()) - &rest) / step;
+            let felt = down.iter().zip(along.iter().zip(&slope.pitch_rad));
+            let felt: Vec<f64> = felt.map(|(down, (along, pitch))| down - pitch * along).collect();
+            let off = |slope: &CirculationSlope| {
+                let closed = DVector::from_vec(slope.times(&felt, count));
+                (closed - &exact).norm() / exact.norm()
+            };
+            println!("off by {:.3}, blades held by {:.3}", off(&slope), off(&still));
+            assert!(off(&slope) < bound && off(&still) > 2.0 * bound);
         }
     }
 }

@@ -178,7 +178,7 @@ fn still_wake(
     let wake = FreeWake::undistorted(panels.clone(), settings, flight, mean, lines).unwrap();
     let circulation = solver.circulation(&start, &panels, azimuths).unwrap();
     let induction = wake.line_induction(&circulation).unwrap();
-    let slope = solver.circulation_slope(&panels, azimuths);
+    let slope = solver.circulation_slope(&condition.controls, &panels, azimuths);
     let frozen = FrozenWake::new(induction, &circulation, &slope).unwrap();
     (wake, circulation, frozen)
 }
@@ -192,7 +192,8 @@ fn the_newton_matrix_of_a_wake_before_sets_the_way_alone() {
     let (mut wake, circulation, before) = still_wake(&mut solver, &condition);
     wake.carry_on(WakeMethod::Relaxed, 3, &circulation).unwrap();
     let induction = wake.line_induction(&circulation).unwrap();
-    let slope = solver.circulation_slope(wake.rotor(), wake.settings().azimuths);
+    let slope =
+        solver.circulation_slope(&condition.controls, wake.rotor(), wake.settings().azimuths);
     let own = FrozenWake::new(induction.clone(), &circulation, &slope).unwrap();
     let kept = before.moved_on(induction, &circulation).unwrap();
     let [own, kept, before] =

@@ -16,7 +16,7 @@ use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 
@@ -202,22 +202,42 @@ impl LineInduction {
     }
 }
 
-/// How the circulation answers to the inflow where the blades stay as they are: a change at all azimuths of one panel
-/// per change of the inflow at all azimuths of another one, for panels near each other.
+/// How the circulation answers to the inflow: where the blades stay as they are, a change at all azimuths of one panel
+/// per change of the inflow at all azimuths of another one, for panels near each other; and the inflow that the motion of
+/// the blades adds.
 ///
 /// ```text
-/// dGamma_t = sum_s C_ts dlambda_s
+/// dGamma_t = sum_s C_ts (e + H Q e)_s,      e = dlambda - theta du_t
 /// ```
 /// Every block is of shape `azimuths x azimuths`, `Omega R^2` per tip speed.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CirculationSlope {
     /// Panel of the circulation, panel of the inflow, and their block; other pairs do not answer.
     pub blocks: Vec<(usize, usize, DMatrix<f64>)>,
+    /// Pitch of the sections at every azimuth and panel, rad: what of a velocity in the plane of the disk acts as inflow, with
+    /// the opposite sign.
+    pub pitch_rad: Vec<f64>,
+    /// What the blades do; none if they stay as they are.
+    pub motion: Option<MotionSlope>,
+}
+
+/// How blades move with the inflow, and what of this their sections feel as inflow, values ordered azimuth by azimuth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionSlope {
+    /// Coordinates of the motion per inflow, `Q`: shape `coordinates x (azimuths panels)`, R per tip speed.
+    pub coordinates: DMatrix<f64>,
+    /// Inflow per coordinate, `H`: shape `(azimuths panels) x coordinates`, tip speed per R, down through the disk.
+    pub inflow: DMatrix<f64>,
 }
 
 impl CirculationSlope {
-    /// Change of the circulation by a change of the inflow, azimuth by azimuth.
-    fn times(&self, inflow: &[f64], panels: usize) -> Vec<f64> {
+    /// Change of the circulation by a change `e` of what the sections feel as inflow, tip speed, azimuth by azimuth: values
+    /// at all panels of one azimuth, then of the next.
+    pub fn times(&self, felt: &[f64], panels: usize) -> Vec<f64> {
+        let mut inflow = DVector::from_column_slice(felt);
+        if let Some(MotionSlope { coordinates, inflow: felt }) = &self.motion {
+            inflow += felt * (coordinates * &inflow);
+        }
         let mut circulation = vec![0.0; inflow.len()];
         for (from, to, block) in &self.blocks {
             for (k, column) in block.column_iter().enumerate() {
@@ -250,9 +270,10 @@ impl FrozenWake {
     /// which sets the speed of convergence, not the result:
     ///
     /// ```text
-    /// dlambda = (I - A C)^-1 (A Gamma - lambda),      du_t = B Gamma - u_t + B C dlambda
+    /// e = (I - (A - theta B) C')^-1 (r - theta r_t),      r = A Gamma - lambda,      r_t = B Gamma - u_t
+    /// du_t = r_t + B C' e,      dlambda = e + theta du_t,      C' = C (I + H Q)
     /// ```
-    /// is Newton's step where the blades stay as they are and their circulation follows the inflow alone.
+    /// is Newton's step where the circulation follows the inflow alone, and the blades with it as the slope says.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] for a circulation or a slope of another grid.
@@ -264,7 +285,19 @@ impl FrozenWake {
         let reference = induction.inflow(circulation)?;
         let (azimuths, panels) = (induction.azimuths, induction.rotor.panels());
         let size = azimuths * panels;
-        let map = induction.down.matrix();
+        let [mut map, along] = induction.matrices();
+        let (pitches, expected) = (slope.pitch_rad.len(), "azimuths times panels of the wake");
+        ensure(
+            pitches == size,
+            "pitch angles of a slope of the circulation",
+            pitches as f64,
+            expected,
+        )?;
+        for (mut row, (of_along, pitch)) in
+            map.row_iter_mut().zip(along.row_iter().zip(&slope.pitch_rad))
+        {
+            row -= of_along * *pitch;
+        }
         let mut newton = DMatrix::identity(size, size);
         for (from, to, block) in &slope.blocks {
             let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);
@@ -272,6 +305,19 @@ impl FrozenWake {
             ensure(fits, "order of a slope of the circulation", block.nrows() as f64, expected)?;
             let down = map.columns_with_step(*from, azimuths, panels - 1);
             newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
+        }
+        if let Some(MotionSlope { coordinates, inflow }) = &slope.motion {
+            let fits = coordinates.shape() == (inflow.ncols(), inflow.nrows());
+            let expected = "azimuths times panels of the wake";
+            let found = inflow.nrows();
+            ensure(
+                fits && found == size,
+                "order of a slope of the motion",
+                found as f64,
+                expected,
+            )?;
+            let answered = inflow - &newton * inflow;
+            newton.gemm(-1.0, &answered, coordinates, 1.0);
         }
         let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)] as f32);
         let newton = Arc::new(newton.partial_piv_lu());
@@ -321,12 +367,19 @@ impl InflowModel for FrozenWake {
     fn improved_step(&self, change: &[f64]) -> Option<Vec<f64>> {
         let size = self.induction.down.order();
         let (down, in_plane) = change.split_at_checked(size)?;
-        let mut step = Mat::from_fn(size, 1, |row, _| down[row] as f32);
-        self.newton.solve_in_place(step.as_mut());
-        let mut step: Vec<f64> = (0..size).map(|row| f64::from(step[(row, 0)])).collect();
-        let circulation = self.slope.times(&step, self.induction.rotor.panels());
-        let followed = self.induction.along.times(&circulation);
-        step.extend(in_plane.iter().zip(followed).map(|(change, more)| change + more));
+        let pitch_rad = &self.slope.pitch_rad;
+        let mut felt =
+            Mat::from_fn(size, 1, |row, _| (down[row] - pitch_rad[row] * in_plane[row]) as f32);
+        self.newton.solve_in_place(felt.as_mut());
+        let felt: Vec<f64> = (0..size).map(|row| f64::from(felt[(row, 0)])).collect();
+        let circulation = self.slope.times(&felt, self.induction.rotor.panels());
+        let mut in_plane = in_plane.to_vec();
+        for (sum, more) in in_plane.iter_mut().zip(self.induction.along.times(&circulation)) {
+            *sum += more;
+        }
+        let with_pitch = felt.iter().zip(pitch_rad.iter().zip(&in_plane));
+        let mut step: Vec<f64> = with_pitch.map(|(felt, (pitch, u))| felt + pitch * u).collect();
+        step.append(&mut in_plane);
         step.iter().all(|value| value.is_finite()).then_some(step)
     }
 }

@@ -13,7 +13,7 @@ mod sweep;
 mod velocity;
 
 pub use free_wake::{FreeWake, WakeFilament};
-pub use influence::{CirculationSlope, FrozenWake, LineInduction};
+pub use influence::{CirculationSlope, FrozenWake, LineInduction, MotionSlope};
 pub use march::WakeMarch;
 pub use passage::{ClosestPassage, FilamentStates, SegmentState};
 pub use settings::{

@@ -234,7 +234,7 @@ fn a_coupling_that_runs_away_keeps_its_last_good_state() {
     (settings.wake.core.radius, settings.wake.core.mutual_radius) = (5e-4, 0.0);
     (settings.wake.core.near_radius, settings.wake.core.panel_share) = (1e-3, f64::INFINITY);
     let mut runaways = 0;
-    for ct_sigma in [0.10, 0.11, 0.12, 0.13] {
+    for ct_sigma in [0.09, 0.105, 0.12, 0.13, 0.14, 0.15] {
         let lost = coupled(0.0, &settings, ct_sigma).unwrap();
         assert!(is_finite(&lost));
         match &lost.outcome {
