@@ -263,7 +263,8 @@ impl Problem<'_> {
             return Ok(None);
         }
         let damped = Arc::new(rotor.with_modal_damping(HELPING_DAMPING));
-        let mut helper = RotorSolver::new(damped, self.balance.advance_ratio, solver.tolerances())?;
+        let mut helper = RotorSolver::new(damped, self.balance.advance_ratio, solver.tolerances())?
+            .with_root_pitch(solver.root_pitch_rad().clone());
         let settings = TrimSettings { tolerance: settings.tolerance.max(1e-4), ..*settings };
         let Ok(found) = self.solve(&mut helper, &settings, None) else { return Ok(None) };
         rotor.refuse_resonance_in_flight(found.controls.theta0_rad, &found.rotor)?;

@@ -358,6 +358,11 @@ pub const AREAS: &[Area] = &[
             "V-MEAS-12",
             "V-MEAS-15",
             "V-MEAS-16",
+            "V-MEAS-17",
+            "V-MEAS-18",
+            "V-MEAS-19",
+            "V-MEAS-20",
+            "V-MEAS-21",
         ],
     },
 ];

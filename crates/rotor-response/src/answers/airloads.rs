@@ -272,7 +272,8 @@ mod tests {
                     .zip(&blade.torsion.value)
                     .map(|(q, shape)| q.value(psi) * shape[i])
                     .sum();
-                let pitch = condition.controls.root_pitch(psi).angle_rad + blade.twist[i] + elastic;
+                let root = condition.controls.root_pitch(solver.root_pitch_rad(), psi);
+                let pitch = root.angle_rad + blade.twist[i] + elastic;
                 let up = load.normal_m2 * pitch.cos() + load.chord_m2 * pitch.sin();
                 thrust += weight * scale * up / 720.0;
             }

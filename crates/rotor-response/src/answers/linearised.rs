@@ -35,11 +35,13 @@ pub type FlapDirection = Vec<HarmonicSeries>;
 pub enum Disturbance {
     /// All flaps.
     Flaps(FlapDirection),
+    /// Pitch at the root of all blades beside the controls, each blade at its own azimuth, rad.
+    RootPitch(HarmonicSeries),
     /// The inflow, by its parameters, tip speed: a part of it that does not come from the loading.
     Inflow(Vec<f64>),
 }
 
-/// Derivative of the hub loads along one direction of flaps or inflow.
+/// Derivative of the hub loads along one direction of flaps, root pitch or inflow.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HubSensitivity {
     /// Change of the hub loads per unit of the direction, fixed frame, all blades.
@@ -69,9 +71,9 @@ pub struct LinearisedRotor {
     pub factorisations: usize,
 }
 
-/// Size of the flap angle and of the inflow in one-sided differences; the motion of the blade is of the
+/// Size of an angle and of the inflow in one-sided differences; the motion of the blade is of the
 /// same size. The loads are close to linear in all of them.
-const FLAP_DIFFERENCE_RAD: f64 = 1e-5;
+const ANGLE_DIFFERENCE_RAD: f64 = 1e-5;
 const INFLOW_DIFFERENCE: f64 = 1e-6;
 /// Relative change of thrust for the slope of the inflow.
 const THRUST_DIFFERENCE: f64 = 1e-5;
@@ -146,7 +148,7 @@ impl RotorSolver {
         self.linearised_along((condition, about), inflow_model, &along, inflow)
     }
 
-    /// The same along directions of flaps or inflow. The inflow of a direction is added to what the loading asks for,
+    /// The same along directions of flaps, root pitch or inflow. The inflow of a direction is added to what the loading asks for,
     /// which a settled inflow follows as it moves.
     ///
     /// # Errors
@@ -174,6 +176,9 @@ impl RotorSolver {
             .map(|direction| match direction {
                 Disturbance::Flaps(motions) => {
                     Ok(self.moved_flaps(condition, &about.inflow, motions))
+                }
+                Disturbance::RootPitch(along) => {
+                    Ok(self.moved_root_pitch(condition, &about.inflow, along))
                 }
                 Disturbance::Inflow(change) => self.moved_inflow(condition, &about.inflow, change),
             })
@@ -216,7 +221,7 @@ impl RotorSolver {
         direction: &[HarmonicSeries],
     ) -> Direction {
         let largest = direction.iter().map(largest_angle).fold(0.0, f64::max);
-        let size = if largest > 0.0 { FLAP_DIFFERENCE_RAD / largest } else { 1.0 };
+        let size = if largest > 0.0 { ANGLE_DIFFERENCE_RAD / largest } else { 1.0 };
         let flap_angles_rad = condition
             .flap_angles_rad
             .iter()
@@ -228,6 +233,20 @@ impl RotorSolver {
         let flaps = Some(self.time.points().iter().map(at).collect());
         let points = self.point_inputs(&moved, inflow);
         Direction { points, size, inflow: vec![0.0; inflow.parameters().len()], flaps }
+    }
+
+    /// The condition with the pitch at the root moved a little along a series.
+    fn moved_root_pitch(
+        &self,
+        condition: &Condition,
+        inflow: &InducedInflow,
+        along: &HarmonicSeries,
+    ) -> Direction {
+        let largest = largest_angle(along);
+        let size = if largest > 0.0 { ANGLE_DIFFERENCE_RAD / largest } else { 1.0 };
+        let moved = self.with_root_pitch(added(self.root_pitch_rad(), along, size));
+        let points = moved.point_inputs(condition, inflow);
+        Direction { points, size, inflow: vec![0.0; inflow.parameters().len()], flaps: None }
     }
 
     /// The condition with the inflow moved a little along a change of its parameters.

@@ -3,6 +3,7 @@
 use crate::error::check;
 use crate::{NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
+use rotor_base::HarmonicSeries;
 use rotor_base::gauss_legendre;
 use rotor_fem::{Distribution, ModalBasis, PitchMotion, TorsionTerms};
 use serde::{Deserialize, Serialize};
@@ -377,14 +378,15 @@ pub struct Controls {
 }
 
 impl Controls {
-    /// Root pitch at an azimuth.
-    pub(crate) fn root_pitch(&self, azimuth_rad: f64) -> PitchMotion {
+    /// Pitch at the root at an azimuth, with higher harmonics beside the controls, rad.
+    pub(crate) fn root_pitch(&self, higher_rad: &HarmonicSeries, azimuth_rad: f64) -> PitchMotion {
         let (sin, cos) = azimuth_rad.sin_cos();
         let (c, s) = (self.theta1c_rad, self.theta1s_rad);
+        let [angle, rate, acceleration] = higher_rad.value_and_rates(azimuth_rad);
         PitchMotion {
-            angle_rad: self.theta0_rad + c * cos + s * sin,
-            rate: s * cos - c * sin,
-            acceleration: -c * cos - s * sin,
+            angle_rad: self.theta0_rad + c * cos + s * sin + angle,
+            rate: s * cos - c * sin + rate,
+            acceleration: -c * cos - s * sin + acceleration,
         }
     }
 }

@@ -146,6 +146,8 @@ pub struct RotorSolver {
     pub(crate) solver: PeriodicSolver,
     tolerances: ResponseTolerances,
     pub(crate) advance_ratio: f64,
+    /// Pitch at the root beside the controls, rad.
+    root_pitch_rad: HarmonicSeries,
 }
 
 impl RotorSolver {
@@ -168,7 +170,8 @@ impl RotorSolver {
             ..PeriodicSettings::default()
         };
         let solver = PeriodicSolver::new(time.clone(), settings)?;
-        Ok(Self { rotor, air: Arc::new(air), time, solver, tolerances, advance_ratio })
+        let (air, root_pitch_rad) = (Arc::new(air), HarmonicSeries::default());
+        Ok(Self { rotor, air, time, solver, tolerances, advance_ratio, root_pitch_rad })
     }
 
     /// The rotor.
@@ -186,6 +189,18 @@ impl RotorSolver {
     #[must_use]
     pub fn with_matrix_of(&self, other: &Self) -> Self {
         Self { solver: self.solver.with_matrix_of(&other.solver), ..self.clone() }
+    }
+
+    /// The same solver with pitch at the root of all blades beside the controls: higher harmonic control, rad, nose up
+    /// positive, each blade at its own azimuth.
+    #[must_use]
+    pub fn with_root_pitch(&self, root_pitch_rad: HarmonicSeries) -> Self {
+        Self { root_pitch_rad, ..self.clone() }
+    }
+
+    /// Pitch at the root beside the controls, rad.
+    pub fn root_pitch_rad(&self) -> &HarmonicSeries {
+        &self.root_pitch_rad
     }
 
     /// The tolerances.
@@ -401,7 +416,7 @@ impl RotorSolver {
             .with_min_len(POINTS_TOGETHER)
             .map(|&azimuth| {
                 let (sin, cos) = azimuth.sin_cos();
-                let pitch = condition.controls.root_pitch(azimuth);
+                let pitch = condition.controls.root_pitch(&self.root_pitch_rad, azimuth);
                 let flap: Vec<FlapAngle> =
                     condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
                 let induced = inflow.velocities(azimuth, stations);

@@ -84,7 +84,8 @@ impl RotorSolver {
         let motion = self.motion_slope(&slopes, &panels, &psi);
         let twists: Vec<f64> =
             panels.iter().map(|r| between(blade.grid().x(), &blade.twist, *r)).collect();
-        let roots = psi.iter().map(|psi| controls.root_pitch(*psi).angle_rad);
+        let roots =
+            psi.iter().map(|psi| controls.root_pitch(self.root_pitch_rad(), *psi).angle_rad);
         let pitch_rad = roots.flat_map(|root| twists.iter().map(move |twist| root + twist));
         CirculationSlope { pitch_rad: pitch_rad.collect(), blocks: blocks.collect(), motion }
     }
@@ -189,7 +190,7 @@ impl RotorSolver {
         .with_trailing_edge(
             |n| 0.75 * chords[n],
             |i, n| {
-                let root = controls.root_pitch(psi[i]).angle_rad;
+                let root = controls.root_pitch(self.root_pitch_rad(), psi[i]).angle_rad;
                 root + twist[n] + sum(&torsion, &motion[i][twisting..], n)
             },
         )

@@ -8,7 +8,7 @@ use crate::common;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{
-    Condition, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
+    Condition, Disturbance, FlapDirection, InflowState, ResponseError, RotorSolution, RotorSolver,
 };
 use rotor_wake::{
     CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
@@ -76,6 +76,58 @@ fn difference(
 
 fn norm(z: impl IntoIterator<Item = f64>) -> f64 {
     z.into_iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// T of higher harmonics of root pitch against differences of converged responses, the inflow settled; with the inflow held
+/// it is far off.
+#[test]
+fn root_pitch_is_linearised_as_differences_are() {
+    let mut solver = common::solver();
+    let (condition, inflow) = (common::condition(), PittPeters);
+    let rest = solver.solve(&condition, &inflow, None).unwrap();
+    let series: Vec<HarmonicSeries> = [2, 3, 4, 5]
+        .into_iter()
+        .flat_map(|n| {
+            [(n, Harmonic { cosine: 1.0, sine: 0.0 }), (n, Harmonic { cosine: 0.0, sine: 1.0 })]
+        })
+        .map(|(n, harmonic)| {
+            let mut series = HarmonicSeries::zero(n);
+            series.set_harmonic(n, harmonic);
+            series
+        })
+        .collect();
+    let along: Vec<Disturbance> = series.iter().cloned().map(Disturbance::RootPitch).collect();
+    let mut of = |state| {
+        let found = solver.linearised_along((&condition, &rest), &inflow, &along, state).unwrap();
+        let hub = found.sensitivities.iter().flat_map(|one| one.hub.harmonic(BLADES));
+        hub.collect::<Vec<f64>>()
+    };
+    let (settled, frozen) = (of(InflowState::Settled), of(InflowState::Frozen));
+    let step_rad = 0.05_f64.to_radians();
+    let at = |series: &HarmonicSeries, by_rad: f64| {
+        let mut moved = series.clone();
+        for n in 1..=series.harmonics.len() {
+            let Harmonic { cosine, sine } = series.harmonic(n);
+            moved.set_harmonic(n, Harmonic { cosine: by_rad * cosine, sine: by_rad * sine });
+        }
+        let found = solver.with_root_pitch(moved).solve(&condition, &inflow, Some(&rest));
+        found.unwrap().hub.harmonic(BLADES)
+    };
+    let exact: Vec<f64> = series
+        .iter()
+        .flat_map(|one| {
+            let (plus, minus) = (at(one, step_rad), at(one, -step_rad));
+            plus.into_iter().zip(minus).map(|(a, b)| (a - b) / (2.0 * step_rad)).collect::<Vec<_>>()
+        })
+        .collect();
+    let off =
+        |found: &[f64]| norm(found.iter().zip(&exact).map(|(a, b)| a - b)) / norm(exact.clone());
+    println!(
+        "root pitch: {:.1e} settled, {:.1e} with the inflow held",
+        off(&settled),
+        off(&frozen)
+    );
+    assert!(off(&settled) < 1e-4 && off(&frozen) > 3e-4);
 }
 
 /// Distance of T and of the hinge moments' derivatives from differences of converged solutions, each over

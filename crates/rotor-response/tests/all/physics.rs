@@ -11,7 +11,7 @@ use rotor_response::{
     Compressibility, Condition, Controls, Couplings, Discretisation, ResponseTolerances,
     ReverseFlow, Rotor, RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
 };
-use rotor_wake::{FlightState, LinearInflow};
+use rotor_wake::{FlightState, LinearInflow, WakeRotor};
 use std::sync::Arc;
 
 fn controls_deg(theta0: f64, theta1c: f64, theta1s: f64) -> Controls {
@@ -42,6 +42,33 @@ fn solve(
     let mu = condition.flight.advance_ratio;
     let mut solver = RotorSolver::new(Arc::new(rotor), mu, ResponseTolerances::default()).unwrap();
     solver.solve(condition, inflow, None).unwrap()
+}
+
+/// Pitch at the root once a revolution is cyclic pitch: the same loads, motion and lines of the wake.
+#[test]
+fn root_pitch_once_a_revolution_is_cyclic_pitch() {
+    let rotor = Rotor::new(paper_model(Couplings::Full), &paper_blade(), Discretisation::default())
+        .unwrap();
+    let solver = RotorSolver::new(Arc::new(rotor), 0.3, ResponseTolerances::default()).unwrap();
+    let cyclic = forward(controls_deg(8.0, 2.0, -5.0));
+    let without = Condition { controls: controls_deg(8.0, 0.0, 0.0), ..cyclic.clone() };
+    let mut once = HarmonicSeries::zero(1);
+    let Controls { theta1c_rad: cosine, theta1s_rad: sine, .. } = cyclic.controls;
+    once.set_harmonic(1, Harmonic { cosine, sine });
+    let pitched = solver.with_root_pitch(once);
+    let panels = WakeRotor::uniform(4, solver.rotor().model().root_cutout, 8).unwrap();
+    let of = |solver: &RotorSolver, condition: &Condition| {
+        let found = solver.clone().solve(condition, &LinearInflow::Drees, None).unwrap();
+        let lines = solver.blade_lines(&found.modal, &condition.controls, &panels, 12);
+        (found.hub.harmonic(4), lines.edge_at(3)[8], found.modal[0].harmonic(1).amplitude())
+    };
+    let (a, b, c) = (of(&solver, &cyclic), of(&pitched, &without), of(&solver, &without));
+    let apart = |x: &[f64], y: &[f64]| {
+        x.iter().zip(y).fold(0.0_f64, |most, (x, y)| most.max((x - y).abs()))
+    };
+    assert!(apart(&a.0, &b.0) < 1e-10 && apart(&a.0, &c.0) > 1e-6);
+    assert!(apart(&a.1, &b.1) < 1e-9 && apart(&a.1, &c.1) > 1e-4);
+    assert!((a.2 - b.2).abs() < 1e-9 && (a.2 - c.2).abs() > 1e-3);
 }
 
 /// Thrust of a stiff coned blade in hover. The part of the rotation along the blade, `Omega sin bp`,

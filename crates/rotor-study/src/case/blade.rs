@@ -95,6 +95,14 @@ section! {
         /// Values along the span in place of uniform ones.
         #[serde(skip_serializing_if = "is_default")]
         pub tables: BladeTables = BladeTables::default(), Any, "", "";
+        /// Higher harmonics of pitch at the root of every blade, beside the controls of the trim; each blade has them at
+        /// its own azimuth.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub root_pitch: Vec<PitchHarmonic> = vec![], Any, "", "";
+        /// What makes them. A swashplate gives harmonics of one less, the same and one more than the number of
+        /// blades; actuators of each blade give any.
+        #[serde(skip_serializing_if = "is_default")]
+        pub root_pitch_by: RootPitchBy = RootPitchBy::EachBlade, Any, "", "";
         /// Blades that differ from the others. The result then has the hub loads at every harmonic, with
         /// controls, attitude and inflow of the rotor with all blades alike.
         #[serde(skip_serializing_if = "Vec::is_empty", alias = "unlike_blades")]
@@ -198,6 +206,33 @@ section! {
         pub flap_motion: f64 = 1.0, Within(-2.0, 2.0), "", "1 moves its flaps like the others', 0 not at all";
     }
 }
+
+section! {
+    /// A harmonic of pitch at the root: `amplitude_deg cos(harmonic psi - phase_deg)`, nose up positive, `psi` the
+    /// azimuth of the blade.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields)]
+    pub struct PitchHarmonic {
+        /// Its number.
+        pub harmonic: usize = 3, Count(2, 12), "1/rev", "the first is cyclic pitch, which the trim sets";
+        /// Its amplitude.
+        pub amplitude_deg: f64 = 0.0, Within(0.0, 10.0), "deg", "higher harmonic control is of 1 or 2 deg";
+        /// Its phase.
+        pub phase_deg: f64 = 0.0, Within(-360.0, 360.0), "deg", "a positive phase is later";
+    }
+}
+
+/// What gives a blade its higher harmonics of pitch.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum RootPitchBy {
+    /// An actuator of its own.
+    #[default]
+    EachBlade,
+    /// The swashplate.
+    Swashplate,
+}
+
+values!(RootPitchBy);
 
 fn one() -> f64 {
     1.0

@@ -27,7 +27,8 @@ mod sections;
 mod wake;
 
 pub use blade::{
-    BladeTables, DissimilarBlade, EffectivenessValues, FlapValues, GravityChoice, RotorValues,
+    BladeTables, DissimilarBlade, EffectivenessValues, FlapValues, GravityChoice, PitchHarmonic,
+    RootPitchBy, RotorValues,
 };
 pub use control::{
     ActuatorChoice, ActuatorPath, ActuatorValues, BenchFolder, ControlActuator, ControlValues,

@@ -2,10 +2,11 @@
 
 use super::{
     Case, CompressibilityChoice, CouplingsChoice, DissimilarBlade, EffectivenessValues, FlapValues,
-    FreeWakeValues, GravityChoice, PropulsiveTrim, RolledUpChoice, TrimValues,
+    FreeWakeValues, GravityChoice, PitchHarmonic, PropulsiveTrim, RolledUpChoice, TrimValues,
 };
 use crate::error::StudyError;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
+use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
     Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
@@ -68,6 +69,18 @@ impl Case {
         };
         BladeProperties::new(spec)
             .map_err(|source| StudyError::Blade { field: field.to_owned(), source })
+    }
+
+    /// Higher harmonics of pitch at the root of every blade, rad.
+    pub fn root_pitch_rad(&self) -> HarmonicSeries {
+        let given = &self.rotor.root_pitch;
+        let most = given.iter().map(|one| one.harmonic).max().unwrap_or(0);
+        let mut series = HarmonicSeries::zero(most);
+        for PitchHarmonic { harmonic, amplitude_deg, phase_deg } in given {
+            let (amplitude, phase) = (amplitude_deg.to_radians(), phase_deg.to_radians());
+            series.set_harmonic(*harmonic, Harmonic::from_amplitude_phase(amplitude, phase));
+        }
+        series
     }
 
     /// Terms of torsion that the equations of moderate deflection keep: in flight with the couplings `Moderate`, in

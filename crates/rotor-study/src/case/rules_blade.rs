@@ -1,7 +1,7 @@
 //! Rules of the blade: root, offsets, tables along the span, blades that differ.
 
 use super::checker::Checker;
-use super::{Case, CouplingsChoice, DynamicStallChoice, Joint, TwistAngle, Untwist};
+use super::{Case, CouplingsChoice, DynamicStallChoice, Joint, RootPitchBy, TwistAngle, Untwist};
 
 /// Softest springs of flap and lag hinges and of the pitch link, over `m0 Omega^2 R^3`.
 const LEAST_SPRING: f64 = 1e-6;
@@ -20,6 +20,7 @@ pub(super) fn check_blade(check: &mut Checker, case: &Case) {
     check.within("rotor.aerodynamic_centre_r", ahead, (-3.0 * quarter, quarter), "R", remedy);
     check_couplings(check, case);
     check_sweep(check, case);
+    check_root_pitch(check, case);
     for (i, blade) in r.dissimilar_blades.iter().enumerate() {
         let list = format!("rotor.dissimilar_blades[{i}]");
         let field = format!("{list}.blade");
@@ -28,6 +29,25 @@ pub(super) fn check_blade(check: &mut Checker, case: &Case) {
             let number = blade.blade;
             let message =
                 format!("`{number}` is used already at {list}; give every dissimilar blade once");
+            check.broken(&field, message);
+        }
+    }
+}
+
+/// Harmonics of pitch at the root once each, and such as what makes them can.
+fn check_root_pitch(check: &mut Checker, case: &Case) {
+    let r = &case.rotor;
+    for (i, one) in r.root_pitch.iter().enumerate() {
+        let (harmonic, field) = (one.harmonic, format!("rotor.root_pitch[{i}].harmonic"));
+        if r.root_pitch[..i].iter().any(|before| before.harmonic == harmonic) {
+            check.broken(&field, format!("`{harmonic}` is given twice; give every harmonic once"));
+        }
+        if r.root_pitch_by == RootPitchBy::Swashplate && harmonic.abs_diff(r.blades) > 1 {
+            let (few, many) = (r.blades - 1, r.blades + 1);
+            let message = format!(
+                "a swashplate of {} blades gives {few} to {many} per rev: give one of these, or rotor.root_pitch_by: EachBlade",
+                r.blades
+            );
             check.broken(&field, message);
         }
     }

@@ -77,7 +77,8 @@ impl TrimmedRotor {
         let at_rotor = |source| StudyError::Response { field: "rotor".to_owned(), source };
         let rotor = case.rotor_of(&case.blade_properties()?, "rotor")?;
         refuse_resonance_of(case, &rotor)?;
-        RotorSolver::new(Arc::new(rotor), case.advance_ratio, tolerances).map_err(at_rotor)
+        let solver = RotorSolver::new(Arc::new(rotor), case.advance_ratio, tolerances);
+        Ok(solver.map_err(at_rotor)?.with_root_pitch(case.root_pitch_rad()))
     }
 
     fn trimmed(
@@ -320,7 +321,8 @@ impl TrimmedRotor {
         each.map(|((field, rotor), own)| {
             let (position, flap_motion) = (own.blade - 1, own.flap_motion);
             let solver = RotorSolver::new(Arc::new(rotor), mu, tolerances)
-                .map_err(|source| StudyError::Response { field, source })?;
+                .map_err(|source| StudyError::Response { field, source })?
+                .with_root_pitch(case.root_pitch_rad());
             Ok(UnlikeSolver { position, flap_motion, solver })
         })
         .collect()

@@ -8,9 +8,9 @@ use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
     Case, ControlValues, DissimilarBlade, EffectivenessValues, Field, FlapValues, FreeWakeValues,
-    HorizontalTailValues, InflowValues, LoadWeights, ModeNumbers, PrescribedCirculation,
-    PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues, Section, StructureValues,
-    ToleranceValues, Value, Visitor, WindTunnelTrim,
+    HorizontalTailValues, InflowValues, LoadWeights, ModeNumbers, PitchHarmonic,
+    PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues,
+    Section, StructureValues, ToleranceValues, Value, Visitor, WindTunnelTrim,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -35,6 +35,7 @@ fn tables() -> String {
         table::<RotorValues>("rotor"),
         table::<BladeTables>("rotor.tables"),
         table::<DissimilarBlade>("rotor.dissimilar_blades"),
+        table::<PitchHarmonic>("rotor.root_pitch"),
         table::<FlapValues>("flaps"),
         table::<EffectivenessValues>("flaps: effectiveness"),
         table::<StructureValues>("structure"),

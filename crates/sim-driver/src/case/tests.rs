@@ -248,6 +248,14 @@ fn single_problems_name_the_remedy() {
         ("(trim: Propulsive(ct: 0.07))", "unknown key `ct`"),
         ("(trim: Free)", "unknown choice `Free`"),
         ("(control: (harmonics: [[2, 2]]))", "`2` is used already"),
+        (
+            "(rotor: (root_pitch: [(harmonic: 3, amplitude_deg: 1), (harmonic: 3)]))",
+            "rotor.root_pitch[1].harmonic: `3` is given twice",
+        ),
+        (
+            "(rotor: (root_pitch: [(harmonic: 2)], root_pitch_by: Swashplate))",
+            "a swashplate of 4 blades gives 3 to 5 per rev",
+        ),
         ("(flaps: [])", "control.harmonics: the blade has no flap to control with"),
         ("(response: (time_order: 1))", "response.time_order: is 1"),
         ("(rotor: (lock_number: 0))", "rotor.lock_number: is 0"),

@@ -2,7 +2,8 @@
 
 use std::sync::LazyLock;
 
-use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use nalgebra::{DMatrix, DVector};
+use rotor_base::{Harmonic, HarmonicSeries, harmonic_waves, uniform_azimuths_rad, wrap_degrees};
 use rotor_response::{SectionAirload, StationAirloads, TipMotion};
 use rotor_study::{ModesQuestion, TrimmedRotor, rotating_modes};
 use sim_driver::case::{Case, FreeWakeValues, InflowChoice, shipped_case};
@@ -88,6 +89,25 @@ pub(crate) const ROWS: &[Check] = &[
             let flown = flown("helinovi_climb.ron", |case| in_wake(case, 360.0, 36))?;
             Ok(airload(&CN, &flown, "ID1", 2)?.correlation)
         }),
+    row(
+        "V-MEAS-17",
+        "HART II, minimum noise less baseline: C_n M^2 at 0.87 R at 3/rev, amplitude off by",
+        "%",
+    )
+    .against(HART)
+    .at_most(25.0, || Ok(airload_change(minimum_noise()?)?.amplitude_percent)),
+    row("V-MEAS-18", "the same: phase off by", "deg")
+        .against(HART)
+        .at_most(20.0, || Ok(airload_change(minimum_noise()?)?.phase_deg)),
+    row("V-MEAS-19", "the same, phase of the root pitch read the other way: off by; shown", "deg")
+        .against(HART)
+        .near(120.0, 30.0, || Ok(airload_change(&read_the_other_way()?)?.phase_deg)),
+    row("V-MEAS-20", "the same, elastic twist of the tip at 3/rev: amplitude off by", "%")
+        .against(HART)
+        .at_most(25.0, || Ok(twist_change(minimum_noise()?)?.amplitude_percent)),
+    row("V-MEAS-21", "the same: phase off by", "deg")
+        .against(HART)
+        .at_most(20.0, || Ok(twist_change(minimum_noise()?)?.phase_deg)),
 ];
 
 /// Harmonics that are compared.
@@ -138,6 +158,8 @@ fn descent(near_wake_deg: f64, steps: usize) -> Result<f64, Failure> {
 
 static BASELINE: LazyLock<Result<Flown, Failure>> =
     LazyLock::new(|| flown("hart_ii_bl.ron", |_| ()));
+static MINIMUM_NOISE: LazyLock<Result<Flown, Failure>> =
+    LazyLock::new(|| flown("hart_ii_mn.ron", |_| ()));
 static LEVEL: LazyLock<Result<Flown, Failure>> =
     LazyLock::new(|| flown("helinovi_level.ron", |_| ()));
 static CLIMB: LazyLock<Result<Flown, Failure>> =
@@ -145,6 +167,19 @@ static CLIMB: LazyLock<Result<Flown, Failure>> =
 
 fn baseline() -> Result<&'static Flown, Failure> {
     shared(&BASELINE)
+}
+
+fn minimum_noise() -> Result<&'static Flown, Failure> {
+    shared(&MINIMUM_NOISE)
+}
+
+/// The minimum-noise case with `A cos(3 psi + phase)` in place of `A cos(3 psi - phase)`.
+fn read_the_other_way() -> Result<Flown, Failure> {
+    flown("hart_ii_mn.ron", |case| {
+        for harmonic in &mut case.rotor.root_pitch {
+            harmonic.phase_deg = -harmonic.phase_deg;
+        }
+    })
 }
 
 fn level() -> Result<&'static Flown, Failure> {
@@ -260,6 +295,67 @@ fn tip(
         }
     }
     if count == 0 { Err(too_few(column, count, 1)) } else { Ok((square / count as f64).sqrt()) }
+}
+
+/// Harmonic of the root pitch of the minimum-noise case.
+const PITCHED: usize = 3;
+
+/// How far a computed change of a harmonic is from the measured one.
+#[derive(Debug)]
+struct Apart {
+    /// Of the amplitude, without sign.
+    amplitude_percent: f64,
+    /// Of the phase, without sign.
+    phase_deg: f64,
+}
+
+/// Of the changes from the second harmonic of a pair to the first.
+fn apart(own: [Harmonic; 2], measured: [Harmonic; 2]) -> Apart {
+    let change = |[to, from]: [Harmonic; 2]| Harmonic {
+        cosine: to.cosine - from.cosine,
+        sine: to.sine - from.sine,
+    };
+    let (own, measured) = (change(own), change(measured));
+    Apart {
+        amplitude_percent: 100.0 * (own.amplitude() / measured.amplitude() - 1.0).abs(),
+        phase_deg: wrap_degrees(own.phase_deg() - measured.phase_deg()).abs(),
+    }
+}
+
+/// Of the change of `C_n M^2` from baseline to minimum noise.
+fn airload_change(pitched: &Flown) -> Result<Apart, Failure> {
+    let own = |flown: &Flown| -> Result<Harmonic, Failure> {
+        let values: Vec<f64> = flown.station.loads.iter().map(CN_M2.value).collect();
+        Ok(HarmonicSeries::from_uniform_samples(&values, MOST)?.harmonic(PITCHED))
+    };
+    let of = |case| Ok::<_, Failure>(measured(CN_M2.file, case, CN_M2.columns)?.harmonic(PITCHED));
+    Ok(apart([own(pitched)?, own(baseline()?)?], [of("MN")?, of("BL")?]))
+}
+
+/// Of the change of the elastic twist of the tip from baseline to minimum noise.
+fn twist_change(pitched: &Flown) -> Result<Apart, Failure> {
+    let own = |flown: &Flown| -> Result<Harmonic, Failure> {
+        let values: Vec<f64> = flown.tip.iter().map(|at| at.twist_rad.to_degrees()).collect();
+        Ok(HarmonicSeries::from_uniform_samples(&values, MOST)?.harmonic(PITCHED))
+    };
+    let of = |case| measured_tip(TIP_TWIST, case);
+    Ok(apart([own(pitched)?, own(baseline()?)?], [of("MN")?, of("BL")?]))
+}
+
+/// Harmonic [`PITCHED`] of a measured motion of the tip, by least squares over mean and 1 to 6/rev.
+fn measured_tip([file, column]: [&str; 2], case: &str) -> Result<Harmonic, Failure> {
+    let table = Table::read(&format!("../measured/hart_ii/{file}"))?;
+    let (mut waves, mut values) = (Vec::new(), Vec::new());
+    for row in table.rows() {
+        if row.text("case")? == case {
+            waves.extend(harmonic_waves(row.number("azimuth_deg")?.to_radians(), MOST));
+            values.push(row.number(column)?);
+        }
+    }
+    let waves = DMatrix::from_row_iterator(values.len(), 1 + 2 * MOST, waves);
+    let found = waves.svd(true, true).solve(&DVector::from_vec(values.clone()), 1e-9);
+    let found = found.map_err(|_| too_few(column, values.len(), 1 + 2 * MOST))?;
+    Ok(Harmonic { cosine: found[2 * PITCHED - 1], sine: found[2 * PITCHED] })
 }
 
 /// A measured vortex farther along the flight path than this from any computed one, R, is that of another turn.
