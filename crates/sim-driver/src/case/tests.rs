@@ -249,11 +249,11 @@ fn single_problems_name_the_remedy() {
         ("(trim: Free)", "unknown choice `Free`"),
         ("(control: (harmonics: [[2, 2]]))", "`2` is used already"),
         (
-            "(rotor: (root_pitch: [(harmonic: 3, amplitude_deg: 1), (harmonic: 3)]))",
+            "(rotor: (root_pitch: [(harmonic: 3, amplitude_deg: 1, phase_deg: 0), (harmonic: 3, amplitude_deg: 1, phase_deg: 9)]))",
             "rotor.root_pitch[1].harmonic: `3` is given twice",
         ),
         (
-            "(rotor: (root_pitch: [(harmonic: 2)], root_pitch_by: Swashplate))",
+            "(rotor: (root_pitch: [(harmonic: 2, amplitude_deg: 1, phase_deg: 0)], root_pitch_by: Swashplate))",
             "a swashplate of 4 blades gives 3 to 5 per rev",
         ),
         ("(flaps: [])", "control.harmonics: the blade has no flap to control with"),
