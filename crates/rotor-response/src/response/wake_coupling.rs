@@ -36,7 +36,7 @@ impl RotorSolver {
     /// dGamma = -(1/2) c s K dlambda,      K = direct + sum over channels of gain P input      s = U / hypot(U, .04)
     /// ```
     /// between the ways in which inflow is read at stations and points and circulation at panels and azimuths. The blade
-    /// answers by its flap bending ([`Self::motion_slope`]).
+    /// answers by its flap bending, in closed form by harmonics.
     pub fn circulation_slope(
         &self,
         controls: &Controls,
