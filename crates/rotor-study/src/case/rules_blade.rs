@@ -43,7 +43,7 @@ fn check_root_pitch(check: &mut Checker, case: &Case) {
             check.broken(&field, format!("`{harmonic}` is given twice; give every harmonic once"));
         }
         if r.root_pitch_by == RootPitchBy::Swashplate && harmonic.abs_diff(r.blades) > 1 {
-            let (few, many) = (r.blades - 1, r.blades + 1);
+            let (few, many) = (r.blades.saturating_sub(1), r.blades + 1);
             let message = format!(
                 "a swashplate of {} blades gives {few} to {many} per rev: give one of these, or rotor.root_pitch_by: EachBlade",
                 r.blades
