@@ -56,6 +56,7 @@ mod layout;
 mod limits;
 mod plant;
 mod record;
+mod reduction;
 mod root;
 mod sensitivity;
 mod settings;

@@ -203,6 +203,22 @@ impl FeedbackLaw {
         self.right_transposed.tr_mul(&scaled).iter().copied().collect()
     }
 
+    /// `J_Z` that the law predicts at its optimum from zero control, where it is `loads_cost`; the modal target is that at
+    /// zero control.
+    pub(crate) fn predicted_loads_cost(
+        &self,
+        rho: f64,
+        target: &DVector<f64>,
+        loads_cost: f64,
+    ) -> f64 {
+        // of the part of the loads that the control reaches, rho / (s^2 + rho) of every amplitude is left
+        let modes = self.singular_values.iter().zip(self.gains(rho)).zip(target.iter());
+        modes.fold(loads_cost, |cost, ((s, gain), z)| {
+            let left = 1.0 - s * gain;
+            cost - z * z * (1.0 - left * left)
+        })
+    }
+
     /// The predicted cost, halved and without its constant, as a form of the control (volt):
     /// `u' P u / 2 + q' u`.
     pub(crate) fn quadratic(&self, rho: f64, target: &DVector<f64>) -> Quadratic {

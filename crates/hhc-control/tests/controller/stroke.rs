@@ -322,3 +322,33 @@ fn a_local_controller_at_the_edge_of_the_range_goes_on_with_the_t_it_has() {
     let apart = reached.0.iter().zip(reached.1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(apart < 1e-3, "{apart} V");
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(50))]
+
+    /// The control of least size that makes a reduction: its gradient of `J_Z` is along itself.
+    #[test]
+    fn a_given_reduction_is_made_with_the_least_control(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 48),
+        baseline in prop::collection::vec(-1.0..1.0_f64, 12),
+        share in 0.05..0.95_f64,
+    ) {
+        let problem = Problem::new(2, &[3], DMatrix::from_vec(12, 4, numbers), &baseline);
+        let t = as_t(&problem.t);
+        let controller =
+            FeedbackController::new(&t, &LoadWeights::Identity, settings(1e-3)).unwrap();
+        let mut plant = problem.plant.clone();
+        let free = controller.run(&mut plant, 0.0).unwrap();
+        let [before, least] = [&free.start, free.last()].map(|step| step.cost.loads);
+        let wanted = before - share * (before - least);
+        let (run, rho) = controller.run_to_cost(&mut plant, wanted).unwrap();
+        prop_assert!((run.last().cost.loads - wanted).abs() < 2e-5 * (before - wanted));
+        let u = DVector::from_column_slice(&run.last().control_volt);
+        let slope = problem.t.tr_mul(&(&problem.z0 + &problem.t * &u));
+        prop_assert!((&slope + &u * rho).norm() < 1e-7 * slope.norm());
+        // more than the plant can do is answered by all that it can do, no reduction is none to ask for
+        let (most, rho) = controller.run_to_cost(&mut plant, 0.5 * least).unwrap();
+        prop_assert!(rho == 0.0 && (most.last().cost.loads - least).abs() < 1e-9 * before);
+        prop_assert!(controller.run_to_cost(&mut plant, before).is_err());
+    }
+}

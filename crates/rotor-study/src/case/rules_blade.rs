@@ -42,14 +42,25 @@ fn check_root_pitch(check: &mut Checker, case: &Case) {
         if r.root_pitch[..i].iter().any(|before| before.harmonic == harmonic) {
             check.broken(&field, format!("`{harmonic}` is given twice; give every harmonic once"));
         }
-        if r.root_pitch_by == RootPitchBy::Swashplate && harmonic.abs_diff(r.blades) > 1 {
-            let (few, many) = (r.blades.saturating_sub(1), r.blades + 1);
-            let message = format!(
-                "a swashplate of {} blades gives {few} to {many} per rev: give one of these, or rotor.root_pitch_by: EachBlade",
-                r.blades
-            );
+        if let Some(message) = case.beyond_swashplate(harmonic) {
             check.broken(&field, message);
         }
+    }
+}
+
+impl Case {
+    /// Why a harmonic of root pitch cannot be made, where a swashplate makes it: it gives the blade number per rev and
+    /// its neighbours.
+    pub(crate) fn beyond_swashplate(&self, harmonic: usize) -> Option<String> {
+        let blades = self.rotor.blades;
+        let beyond = harmonic.abs_diff(blades) > 1;
+        (self.rotor.root_pitch_by == RootPitchBy::Swashplate && beyond).then(|| {
+            format!(
+                "a swashplate of {blades} blades gives {} to {} per rev: give one of these, or rotor.root_pitch_by: EachBlade",
+                blades.saturating_sub(1),
+                blades + 1
+            )
+        })
     }
 }
 

@@ -14,6 +14,9 @@ pub enum PlantError {
     /// The actuator.
     #[error(transparent)]
     Actuator(#[from] PreisachError),
+    /// A control vector that does not fit.
+    #[error(transparent)]
+    Control(ControlError),
     /// No bias voltage centres the flap.
     #[error("bias voltage: {0}")]
     Bias(ControlError),

@@ -5,10 +5,13 @@ mod memo;
 mod outputs;
 mod pair_power;
 mod power;
+mod root_pitch;
 mod rotor_plant;
 mod tangent;
 
 pub(crate) use answered::{Answered, Answers, Linearised};
 pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
 pub use pair_power::given_watt_per_rad2;
+pub use root_pitch::RootPitchPlant;
+pub(crate) use rotor_plant::angles_rad;
 pub use rotor_plant::{PlantState, RotorPlant};

@@ -240,7 +240,7 @@ pub(super) fn bits(voltages: &[(usize, Harmonic)]) -> impl Iterator<Item = (usiz
 }
 
 /// Flap angles as the rotor takes them, rad.
-pub(super) fn angles_rad(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
+pub(crate) fn angles_rad(flaps: &[FlapMotion]) -> Vec<HarmonicSeries> {
     flaps.iter().map(FlapMotion::angle_rad).collect()
 }
 

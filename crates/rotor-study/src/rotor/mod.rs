@@ -7,6 +7,7 @@ mod inflow;
 mod once;
 mod reconverged;
 mod resonance;
+mod root_pitch;
 mod trimmed;
 
 pub use authority::FlapAuthority;
@@ -15,4 +16,5 @@ pub use inflow::{SettledTrim, WakeStatus, settled_trim, wake_status, wake_warnin
 pub(crate) use inflow::{descent_warning, passage_warning};
 pub use reconverged::ReconvergedAuthority;
 pub use resonance::refuse_resonance;
+pub use root_pitch::RootPitchEffect;
 pub use trimmed::{TrimmedRotor, UnlikeSolver};

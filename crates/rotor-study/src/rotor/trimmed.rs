@@ -26,8 +26,8 @@ const ROUGHLY_LINEAR: f64 = 3e-4;
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
 pub struct TrimmedRotor {
-    solver: RotorSolver,
-    inflow: Arc<dyn InflowModel>,
+    pub(super) solver: RotorSolver,
+    pub(super) inflow: Arc<dyn InflowModel>,
     pub(super) trim: TrimSolution,
     scales: RotorScales,
     /// Inflow in the T of the linearised rotor.
@@ -223,7 +223,7 @@ impl TrimmedRotor {
 
     /// What the inflow does in T. A loop measures responses with the geometry of the wake held: the T that
     /// converges it anew is a forecast of what the hub would feel, not of what the loop measures.
-    fn state_in_t(&self) -> InflowState {
+    pub(super) fn state_in_t(&self) -> InflowState {
         match self.t_inflow {
             TInflowChoice::Settled | TInflowChoice::Reconverged => InflowState::Settled,
             TInflowChoice::Frozen => InflowState::Frozen,
@@ -280,6 +280,19 @@ impl TrimmedRotor {
         self.solver.station_loads(&self.flaps_at_rest(), &self.trim.rotor, stations)
     }
 
+    /// The same of a response to flap motions of its own, rad.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::station_loads`].
+    pub fn station_loads_with(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+        response: &RotorSolution,
+        stations: &[f64],
+    ) -> Result<Vec<StationLoads>, ResponseError> {
+        self.solver.station_loads(&self.condition(flap_angles_rad), response, stations)
+    }
+
     /// Airloads at stations (R) of the lifting part of the blade, and the motion of its tip, flaps at rest, at so many equal
     /// azimuths.
     ///
@@ -296,12 +309,12 @@ impl TrimmedRotor {
         Ok((loads, self.solver.tip_motion(found, azimuths)))
     }
 
-    fn flaps_at_rest(&self) -> Condition {
+    pub(super) fn flaps_at_rest(&self) -> Condition {
         self.condition(vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()])
     }
 
     /// Controls and attitude of the trim with flaps that move.
-    fn condition(&self, flap_angles_rad: Vec<HarmonicSeries>) -> Condition {
+    pub(super) fn condition(&self, flap_angles_rad: Vec<HarmonicSeries>) -> Condition {
         Condition {
             bank_rad: self.trim.attitude.roll_rad,
             flight: self.trim.flight,

@@ -2,3 +2,4 @@
 
 mod coupled_plant;
 mod power_weight;
+mod root_pitch;

@@ -43,6 +43,8 @@ pub enum Command {
     Modes(ModesArgs),
     /// Trim a case in its free wake: geometry, inflow over the disk, convergence.
     Wake(WakeArgs),
+    /// Flaps against pitch at the root of the blades, at equal reduction of vibration.
+    RootPitch(RootPitchArgs),
     /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
     /// Check a case, a data folder or an actuator file; reports every problem with its line.
@@ -320,6 +322,20 @@ pub struct ModesArgs {
     /// for every file that is written.
     #[arg(long, value_name = "FILE.csv")]
     pub fan: Option<PathBuf>,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// `hhc root-pitch`.
+#[derive(Debug, Clone, Args)]
+pub struct RootPitchArgs {
+    /// Case file; the paper's rotor if left out.
+    #[arg(value_name = "CASE.ron")]
+    pub case: Option<PathBuf>,
+    /// Inflow model instead of the case's.
+    #[arg(long, value_enum)]
+    pub inflow: Option<InflowOverride>,
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,

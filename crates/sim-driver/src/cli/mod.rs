@@ -66,6 +66,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Import(args)) => data::import(args),
         Some(Command::Modes(args)) => rotor::modes(args),
         Some(Command::Wake(args)) => rotor::wake(args),
+        Some(Command::RootPitch(args)) => rotor::root_pitch(args),
         Some(Command::Section(args)) => section::section(args),
         Some(Command::Check { file, format }) => data::check(file, *format),
         Some(Command::Init { file }) => data::init(file),

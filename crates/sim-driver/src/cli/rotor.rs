@@ -1,14 +1,15 @@
-//! `hhc modes` and `hhc wake`.
+//! `hhc modes`, `hhc wake` and `hhc root-pitch`.
 
-use super::args::{ModesArgs, WakeArgs};
+use super::args::{ModesArgs, RootPitchArgs, WakeArgs};
 use super::{
-    case_or_paper, check_advance_ratio, check_range, refuse_diverged, refuse_inputs, warn,
-    write_texts,
+    case_or_paper, check_advance_ratio, check_range, overridden, refuse_diverged, refuse_inputs,
+    warn, write_texts,
 };
 use crate::SimError;
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, print};
 use crate::print::modes::{fan_csv, modes_of_case};
+use crate::print::root_pitch::root_pitch_of_case;
 use crate::print::wake::wake_files;
 use crate::problem::Problems;
 use crate::progress::Progress;
@@ -62,4 +63,10 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     }
     print(&result.render(args.format)?)?;
     refuse_diverged(&loaded, result.diverged)
+}
+
+pub(super) fn root_pitch(args: &RootPitchArgs) -> Result<(), SimError> {
+    let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
+    let result = Progress::during("flaps and root pitch", || root_pitch_of_case(&loaded))?;
+    print(&result.render(args.format)?)
 }

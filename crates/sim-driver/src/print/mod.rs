@@ -3,4 +3,5 @@
 pub mod airloads;
 pub mod blade_loads;
 pub mod modes;
+pub mod root_pitch;
 pub mod wake;

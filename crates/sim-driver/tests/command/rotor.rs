@@ -550,3 +550,27 @@ fn airloads_and_tip_motion_are_tables() {
     assert_eq!(lines.next(), Some(header));
     assert_eq!(lines.count(), 360);
 }
+
+#[test]
+fn flaps_and_root_pitch_side_by_side() {
+    let place = Place::new();
+    place.write("case.ron", "(control: (harmonics: [[3]]))");
+    let text = place.hhc(&["root-pitch", "case.ron"]).done();
+    assert!(text.starts_with("3/rev: J falls by"), "{text}");
+    for part in ["amplitude at 3/rev, deg", "no control", "torsion at the root, half p-p, N m"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+    let json = place.hhc(&["root-pitch", "case.ron", "--format", "json"]).json();
+    let set = &json["sets"][0];
+    let j = |state: &str| set[state]["j_z"].as_f64().unwrap();
+    let fall = j("no_control") - j("root_pitch");
+    assert!((j("flaps") - j("root_pitch")).abs() < 2e-5 * fall, "{set}");
+    assert_eq!(set["flaps"]["motions"].as_array().unwrap().len(), 2);
+    place.write(
+        "swashplate.ron",
+        "(rotor: (root_pitch_by: Swashplate), control: (harmonics: [[2]]))",
+    );
+    place
+        .hhc(&["root-pitch", "swashplate.ron"])
+        .rejected(&["control.harmonics", "gives 3 to 5 per rev"]);
+}
