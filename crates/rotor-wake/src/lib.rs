@@ -8,6 +8,7 @@
 //! | linear over the disk: prescribed, uniform (Glauert's momentum theory), Drees | [`LinearInflow`] |
 //! | mean and gradients from thrust and its first harmonics | [`PittPeters`] |
 //! | free wake: converged geometry, march in time, wake held still | [`FreeWake`], [`WakeMarch`], [`FrozenWake`] |
+//! | flow round a fuselage | [`Body`] |
 //! | vortex kernel | [`SegmentSet`], [`induced_velocities`] |
 //!
 //! ```text
@@ -32,6 +33,7 @@
 //! Velocities are divided by the tip speed `Omega R`, radial stations by `R`; azimuth is zero with
 //! the blade over the tail and grows with rotation, counter-clockwise seen from above.
 
+mod body;
 mod disk;
 mod error;
 mod inflow;
@@ -42,6 +44,7 @@ mod pitt_peters;
 mod vector;
 mod wake;
 
+pub use body::Body;
 pub use disk::blades::BladeLines;
 pub use disk::circulation::CirculationMap;
 pub use disk::inflow_map::InflowMap;

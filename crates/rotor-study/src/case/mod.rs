@@ -44,8 +44,8 @@ pub use sections::{
     ToleranceValues,
 };
 pub use wake::{
-    CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice, PrescribedCirculation,
-    RolledUpChoice, WakeChoices, WakePreset,
+    BodyValues, CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice,
+    PrescribedCirculation, RolledUpChoice, WakeChoices, WakePreset,
 };
 // settings of the models below, which a case names as they are
 pub use flap_aero::AttachedFlowModel;

@@ -265,6 +265,7 @@ impl Case {
             symmetry: chosen.symmetry,
             far_field: chosen.far_field,
             velocity_stride: chosen.velocity_stride,
+            body: values.body.body(),
             ..FreeWakeSettings::default()
         };
         let usual = WakeTrimSettings::default();

@@ -66,6 +66,9 @@ fn check_wake(check: &mut Checker, wake: &FreeWakeValues, blades: usize) {
         );
         check.refuse(field, message);
     }
+    if let Some(Err(source)) = wake.body.body().map(|body| body.validate()) {
+        check.refuse("inflow.model.body", format!("{source}; 0 for length_r is no body"));
+    }
     if wake.choices().velocity_stride > 1 && wake.method == WakeMethod::Marched {
         let message = "a march in time computes every age: leave it out, or give method: Relaxed";
         check.refuse("inflow.model.velocity_stride", message);

@@ -1,8 +1,8 @@
 //! The sections of a case: the free wake.
 
-use super::field::{section, values};
+use super::field::{is_default, section, values};
 use rotor_wake::{
-    ControlPoint, CoreModel, FarField, NearWakeMotion, ReleasePoint, WakeMethod, WakeSymmetry,
+    Body, ControlPoint, CoreModel, FarField, NearWakeMotion, ReleasePoint, WakeMethod, WakeSymmetry,
 };
 use serde::{Deserialize, Serialize};
 
@@ -88,6 +88,26 @@ values!(
 );
 
 section! {
+    /// `body: (...)`: a fuselage or the housing of a test stand, fixed to the hub, as a prolate spheroid in the stream of
+    /// the flight. It changes the velocity at the blades and along the free wake; the wake does not change the flow round
+    /// it.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct BodyValues {
+        /// Length; 0 is no body.
+        pub length_r: f64 = 0.0, Within(0.0, 4.0), "R", "0 is no body";
+        /// Largest diameter.
+        pub diameter_r: f64 = 0.3, Within(0.01, 2.0), "R", "less than the length";
+        /// Its axis below the hub, at its middle.
+        pub below_hub_r: f64 = 0.4, Within(-2.0, 2.0), "R", "below the hub is positive";
+        /// Its middle behind the hub.
+        pub aft_of_hub_r: f64 = 0.0, Within(-4.0, 4.0), "R", "aft is positive";
+        /// Its axis against the plane normal to the shaft, nose up positive.
+        pub nose_up_deg: f64 = 0.0, Within(-45.0, 45.0), "deg", "nose up is positive";
+    }
+}
+
+section! {
     /// `model: FreeWake(...)`: the free wake of Bagai and Leishman. A preset makes the choices that belong together; a field
     /// that is given comes before it. Those that move the result most stand first.
     #[derive(Copy)]
@@ -146,6 +166,9 @@ section! {
         /// Velocities of the relaxed wake are computed at every n-th age and interpolated between along the
         /// path of the air; by the preset 1, 2 if fast.
         pub velocity_stride: Option<usize> = None, Count(1, 3), "", "1 computes every age";
+        /// Fuselage below the rotor; none by default.
+        #[serde(skip_serializing_if = "is_default")]
+        pub body: BodyValues = BodyValues::default(), Any, "", "";
         /// Largest change of the inflow between two updates of the wake, over the tip speed.
         pub tolerance: f64 = 2e-4, Within(1e-8, 1e-2), "", "2e-4 of the tip speed is usual";
         /// RMS displacement of the wake in the last sweep of an update.
@@ -216,6 +239,18 @@ impl WakePreset {
 /// Turns that repeat the last free one in forward flight, and in hover.
 const USUAL_FAR_TURNS: usize = 2;
 const HOVER_FAR_TURNS: usize = 6;
+
+impl BodyValues {
+    /// The body; none without length.
+    pub(crate) fn body(&self) -> Option<Body> {
+        (self.length_r > 0.0).then(|| Body {
+            half_length: 0.5 * self.length_r,
+            radius: 0.5 * self.diameter_r,
+            middle: [self.aft_of_hub_r, 0.0, -self.below_hub_r],
+            nose_up_rad: self.nose_up_deg.to_radians(),
+        })
+    }
+}
 
 impl FreeWakeValues {
     /// The choices of the preset, but for those that are given.

@@ -153,6 +153,11 @@ impl FreeWake {
         [self.flight.advance_ratio, 0.0, -self.flight.normal_inflow()]
     }
 
+    /// What a body adds to the velocity of the air at a point.
+    pub(crate) fn by_the_body(&self, point: Vec3) -> Vec3 {
+        self.settings.body.map_or([0.0; 3], |body| body.velocity(point, self.free_stream()))
+    }
+
     /// Instants that differ: after one blade spacing the wakes of all blades are what they were.
     pub(crate) fn phases(&self) -> usize {
         self.settings.azimuths / self.rotor.blades()

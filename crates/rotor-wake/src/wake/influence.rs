@@ -24,9 +24,10 @@ use std::sync::Arc;
 /// and azimuths, for one geometry of the wake.
 ///
 /// ```text
-/// lambda_i = A Gamma                      down through the disk
-/// u_t      = B Gamma                      from leading to trailing edge, in the plane of the disk
+/// lambda_i = A Gamma + lambda_b           down through the disk
+/// u_t      = B Gamma + u_b                from leading to trailing edge, in the plane of the disk
 /// ```
+/// with `lambda_b`, `u_b` of the body, if there is one.
 /// Vectors are ordered azimuth by azimuth; velocities in tip speed, circulation in `Omega R^2`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LineInduction {
@@ -34,6 +35,8 @@ pub struct LineInduction {
     azimuths: usize,
     down: RowBlocks,
     along: RowBlocks,
+    /// What the body adds, down and along; empty without one.
+    by_the_body: [Vec<f64>; 2],
 }
 
 /// Where the control points of Weissinger's method lie between the quarter chord and the trailing edge.
@@ -132,6 +135,7 @@ impl FreeWake {
             })
             .collect();
         let blocks = self.line_targets();
+        let by_the_body = self.body_at(&blocks, size);
         let maps: Vec<[RowBlock; 2]> = blocks
             .into_par_iter()
             .map(|block| {
@@ -151,7 +155,23 @@ impl FreeWake {
         let turns = self.is_axial();
         let [down, along] = [RowBlocks(down), RowBlocks(along)]
             .map(|map| if turns { map.turned(panels) } else { map });
-        Ok(LineInduction { rotor: self.rotor.clone(), azimuths, down, along })
+        Ok(LineInduction { rotor: self.rotor.clone(), azimuths, down, along, by_the_body })
+    }
+
+    /// What the body adds at the targets, down and along. In axial flight there is no stream to flow round it.
+    fn body_at(&self, blocks: &[TargetBlock], size: usize) -> [Vec<f64>; 2] {
+        if self.settings.body.is_none() || self.is_axial() {
+            return Default::default();
+        }
+        let [mut down, mut along] = [vec![0.0; size], vec![0.0; size]];
+        for block in blocks {
+            for (lane, (&row, &point)) in block.rows.iter().zip(&block.points).enumerate() {
+                let [x, y, z] = self.by_the_body(point);
+                down[row] = -z;
+                along[row] = x * block.sines[lane] - y * block.cosines[lane];
+            }
+        }
+        [down, along]
     }
 }
 
@@ -181,6 +201,7 @@ impl LineInduction {
             azimuths: 1,
             down: summed(&self.down),
             along: summed(&self.along),
+            by_the_body: Default::default(),
         }
     }
 
@@ -197,7 +218,13 @@ impl LineInduction {
         let count = circulation.values().len();
         let expected = "azimuths times panels of the wake";
         ensure(count == self.down.order(), "values of the circulation", count as f64, expected)?;
-        let [down, along] = [&self.down, &self.along].map(|map| map.times(circulation.values()));
+        let [mut down, mut along] =
+            [&self.down, &self.along].map(|map| map.times(circulation.values()));
+        for (sums, of_body) in [&mut down, &mut along].into_iter().zip(&self.by_the_body) {
+            for (sum, value) in sums.iter_mut().zip(of_body) {
+                *sum += value;
+            }
+        }
         InflowMap::new(&self.rotor, down)?.with_in_plane(along)
     }
 }

@@ -242,6 +242,10 @@ impl WakeMarch {
                 Some(own) => own.clone(),
                 None => velocities[0].iter().map(|v| v.iter().map(turned).collect()).collect(),
             };
+            let points = state.levels[0].iter().flatten();
+            for (v, at) in state.velocity.iter_mut().flatten().zip(points) {
+                *v = add(*v, wake.by_the_body(*at));
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! The choices of a free wake.
 
 use crate::error::ensure;
-use crate::{CoreModel, WakeError};
+use crate::{Body, CoreModel, WakeError};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_6;
 
@@ -191,6 +191,8 @@ pub struct FreeWakeSettings {
     pub velocity_stride: usize,
     /// Weight of the corrector's velocities against the predictor's, 0 to 1.
     pub relaxation: f64,
+    /// A body that the stream flows round; none for an isolated rotor.
+    pub body: Option<Body>,
 }
 
 impl Default for FreeWakeSettings {
@@ -210,6 +212,7 @@ impl Default for FreeWakeSettings {
             far_field: FarField::default(),
             velocity_stride: 1,
             relaxation: 0.5,
+            body: None,
         }
     }
 }
@@ -321,6 +324,9 @@ impl FreeWakeSettings {
         let (stride, expected) = (self.velocity_stride, "1 to a quarter of the azimuth steps");
         let is_stride = (1..=self.azimuths / 4).contains(&stride);
         ensure(is_stride, "velocity_stride", count(stride), expected)?;
+        if let Some(body) = &self.body {
+            body.validate()?;
+        }
         let is_part = self.relaxation > 0.0 && self.relaxation <= 1.0;
         ensure(is_part, "relaxation", self.relaxation, "more than 0 and at most 1")
     }

@@ -80,7 +80,8 @@ impl FreeWake {
             .collect()
     }
 
-    /// Induced velocity at points in hub axes, averaged over the revolution: what a slow probe measures.
+    /// Induced velocity at points in hub axes, averaged over the revolution, and that of the body: what a slow probe
+    /// measures.
     ///
     /// # Errors
     /// [`WakeError::BadInput`] for a circulation of another grid.
@@ -91,7 +92,7 @@ impl FreeWake {
     ) -> Result<Vec<Vec3>, WakeError> {
         self.check(circulation)?;
         let sets = self.all_segments(circulation, Sources::of_loads);
-        let mut mean = vec![[0.0; 3]; points.len()];
+        let mut mean: Vec<Vec3> = points.iter().map(|at| self.by_the_body(*at)).collect();
         for set in &sets {
             for (m, v) in mean.iter_mut().zip(induced_velocities(points, set)) {
                 *m = add(*m, scale(v, 1.0 / sets.len() as f64));
@@ -133,6 +134,11 @@ impl FreeWake {
         }
         if self.settings.core.model == CoreModel::RosenheadMoore {
             self.add_arcs(circulation, &free, &mut out);
+        }
+        for (f, v) in free.iter().zip(&mut out) {
+            for (at, v) in f.points.iter().zip(v) {
+                *v = add(*v, self.by_the_body(*at));
+            }
         }
         if stride > 1 {
             for (f, v) in free.iter().zip(&mut out) {
