@@ -2,6 +2,7 @@
 
 mod errors;
 mod known_errors;
+mod measured_flap;
 mod section;
 mod section_beyond;
 mod section_compressible;
@@ -21,4 +22,9 @@ fn section_compressible_rows() {
 #[test]
 fn section_beyond_rows() {
     hold(section_beyond::ROWS);
+}
+
+#[test]
+fn measured_flap_rows() {
+    hold(measured_flap::ROWS);
 }

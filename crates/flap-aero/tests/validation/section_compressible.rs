@@ -141,51 +141,6 @@ pub(crate) const ROWS: &[Check] = &[
     .against("d'Alembert")
     .at_most(1e-12, drag_of_attached_flow),
     row(
-        "V-AERO-26",
-        "oscillating flap in the wind tunnel, M 0.5, k 0.098: phase of the lift, \
-         measured less calibrated",
-        "deg",
-    )
-    .against("flap_oscillation, digitised")
-    .near(0.0, 0.5, || Ok(oscillating_flap()?[0])),
-    row("V-AERO-27", "the same: moment, measured over calibrated", "-")
-        .against("flap_oscillation, digitised")
-        .near(1.0, 0.01, || Ok(oscillating_flap()?[1])),
-    row(
-        "V-AERO-28",
-        "the same: lift, measured over calibrated (the boundary layer's share, no \
-         error of the theory)",
-        "-",
-    )
-    .against("flap_oscillation, digitised")
-    .near(0.78, 0.01, || Ok(oscillating_flap()?[2])),
-    row(
-        "V-AERO-51",
-        "hinge moment of that flap, measured over calibrated (the boundary layer's share again)",
-        "-",
-    )
-    .against(TIJDEMAN)
-    .near(0.80, 0.01, || Ok(measured_flap(&FLAP_M050)?.ratios[2])),
-    row("V-AERO-52", "the same: phase of the hinge moment, measured less calibrated", "deg")
-        .against(TIJDEMAN)
-        .near(0.9, 0.3, || Ok(measured_flap(&FLAP_M050)?.phases_deg[2])),
-    row(
-        "V-AERO-53",
-        "the same flap at M .748, k .268, beyond the theory, which knows no shock: lift, measured over calibrated",
-        "-",
-    )
-    .against(TIJDEMAN)
-    .between(0.85, 1.0, || Ok(measured_flap(&FLAP_M075)?.ratios[0])),
-    row("V-AERO-54", "the same, M .748: moment, measured over calibrated", "-")
-        .against(TIJDEMAN)
-        .between(0.85, 1.0, || Ok(measured_flap(&FLAP_M075)?.ratios[1])),
-    row("V-AERO-55", "the same, M .748: hinge moment, measured over calibrated", "-")
-        .against(TIJDEMAN)
-        .between(0.75, 0.85, || Ok(measured_flap(&FLAP_M075)?.ratios[2])),
-    row("V-AERO-56", "the same, M .748: phase of the lift, measured less calibrated", "deg")
-        .against(TIJDEMAN)
-        .between(-8.0, -2.0, || Ok(measured_flap(&FLAP_M075)?.phases_deg[0])),
-    row(
         "V-AERO-29",
         "marched calibrated lift, 72 steps per cycle, k 0.2: largest error of the \
          amplitude",
@@ -404,81 +359,6 @@ fn drag_of_attached_flow() -> Result<f64, Failure> {
         }
     }
     worst("angles", 64, drags)
-}
-
-/// Phase difference of the lift in degrees, moment and lift of the measurement over the calibrated
-/// model.
-fn oscillating_flap() -> Result<[f64; 3], Failure> {
-    let section =
-        AttachedFlowModel::Calibrated.coefficients(Mach::new(0.5)?, FlapChord::new(0.25)?)?;
-    let [cn, cm, _] = harmonic_response(&section, 0.098, Motion::Flap);
-    let [lift, moment] = [
-        first_harmonic(include_str!("../../../../fixtures/reference/flap_oscillation/exp_cn.txt")),
-        first_harmonic(include_str!("../../../../fixtures/reference/flap_oscillation/exp_cm.txt")),
-    ];
-    // the direction round the loop is not known: the size of the quadrature counts
-    let phase = |c: Complex64| c.im.abs().atan2(c.re.abs()).to_degrees();
-    Ok([phase(lift) - phase(cn), moment.norm() / cm.norm(), lift.norm() / cn.norm()])
-}
-
-const TIJDEMAN: &str = "Tijdeman and Schippers, NLR (1973), first harmonics of digitised loops";
-
-/// First harmonics of lift, moment and hinge moment per rad of a flap of a quarter of the chord, NACA 64A006, 2.5 deg: in
-/// phase and in quadrature. Least squares through some 30 digitised points of each loop; standard errors of 0.3 % at most.
-struct MeasuredFlap {
-    mach: f64,
-    reduced_frequency: f64,
-    harmonics: [[f64; 2]; 3],
-}
-
-const FLAP_M050: MeasuredFlap = MeasuredFlap {
-    mach: 0.5,
-    reduced_frequency: 0.098,
-    harmonics: [[2.714, -0.630], [-0.7566, -0.0461], [-0.0505, -0.0033]],
-};
-const FLAP_M075: MeasuredFlap = MeasuredFlap {
-    mach: 0.748,
-    reduced_frequency: 0.268,
-    harmonics: [[2.608, -0.952], [-1.0385, -0.0273], [-0.0632, -0.0161]],
-};
-
-/// A measured flap over and less the calibrated model.
-struct Compared {
-    ratios: [f64; 3],
-    phases_deg: [f64; 3],
-}
-
-fn measured_flap(flap: &MeasuredFlap) -> Result<Compared, Failure> {
-    let section =
-        AttachedFlowModel::Calibrated.coefficients(Mach::new(flap.mach)?, FlapChord::new(0.25)?)?;
-    let found = harmonic_response(&section, flap.reduced_frequency, Motion::Flap);
-    let measured = flap.harmonics.map(|[re, im]| Complex64::new(re, im));
-    let of = |pick: fn(Complex64, Complex64) -> f64| [0, 1, 2].map(|k| pick(measured[k], found[k]));
-    // the direction round the loop is not known: the size of the quadrature counts
-    let phase = |c: Complex64| c.im.abs().atan2(c.re.abs()).to_degrees();
-    Ok(Compared {
-        ratios: of(|measured, found| measured.norm() / found.norm()),
-        phases_deg: [0, 1, 2].map(|k| phase(measured[k]) - phase(found[k])),
-    })
-}
-
-/// First harmonic of points round a loop, per rad: in phase and in quadrature with the flap angle.
-fn first_harmonic(text: &str) -> Complex64 {
-    const AMPLITUDE_DEG: f64 = 2.5;
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .map(|line| line.split_whitespace().filter_map(|word| word.parse().ok()).collect())
-        .collect();
-    let [angles, values] = [&rows[0], &rows[1]];
-    let n = angles.len();
-    let basis = nalgebra::DMatrix::from_fn(n, 3, |i, c| {
-        let sine = (angles[i] / AMPLITUDE_DEG).clamp(-1.0, 1.0);
-        let rising = angles[(i + 1) % n] > angles[(i + n - 1) % n];
-        [1.0, sine, (1.0 - sine * sine).sqrt() * if rising { 1.0 } else { -1.0 }][c]
-    });
-    let right = nalgebra::DVector::from_column_slice(values);
-    let solution = basis.svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| right.clone());
-    Complex64::new(solution[1], solution[2]) / AMPLITUDE_DEG.to_radians()
 }
 
 fn recurrence_error() -> Result<f64, Failure> {

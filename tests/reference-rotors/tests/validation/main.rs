@@ -1,5 +1,7 @@
 //! Rows of the validation page: the free wake of the reference rotors.
 
+mod measured_inflow;
+mod measured_trim;
 mod wake;
 mod wake_hover;
 mod wake_measured;
@@ -19,4 +21,9 @@ fn wake_hover_rows() {
 #[test]
 fn wake_measured_rows() {
     hold(wake_measured::ROWS);
+}
+
+#[test]
+fn measured_trim_rows() {
+    hold(measured_trim::ROWS);
 }
