@@ -26,7 +26,7 @@ const ROUGHLY_LINEAR: f64 = 3e-4;
 /// A rotor in trim, flaps at rest: where every control run starts.
 #[derive(Debug, Clone)]
 pub struct TrimmedRotor {
-    solver: RotorSolver,
+    pub(super) solver: RotorSolver,
     inflow: Arc<dyn InflowModel>,
     pub(super) trim: TrimSolution,
     scales: RotorScales,

@@ -3,4 +3,5 @@
 pub mod airloads;
 pub mod blade_loads;
 pub mod modes;
+mod revolution;
 pub mod wake;
