@@ -6,7 +6,7 @@ use crate::case::{
 };
 use crate::error::StudyError;
 use crate::loads::HubLoads;
-use crate::rotor::{TrimmedRotor, descent_warning, passage_warning, wake_warnings};
+use crate::rotor::{DiskLoads, TrimmedRotor, descent_warning, passage_warning, wake_warnings};
 use rotor_wake::{
     BladeLines, CirculationMap, ClosestPassage, FlightState, FreeWake, InducedInflow, WakeError,
     WakeRotor, momentum_inflow,
@@ -103,6 +103,8 @@ pub struct FoundWake {
     pub circulation: CirculationMap,
     /// Its inflow.
     pub inflow: InducedInflow,
+    /// What the disk carries; none for a prescribed circulation, which no section makes.
+    pub disk: Option<DiskLoads>,
 }
 
 /// Trims a case in its free wake, or moves a wake of prescribed circulation; a case with another inflow gets the default
@@ -125,7 +127,10 @@ pub fn wake_of_case(case: &Case) -> Result<FoundWake, StudyError> {
         field: "inflow.model".to_owned(),
         message: "the rotor was trimmed without a free wake".to_owned(),
     })?;
+    let at_wake = |source| StudyError::Response { field: "inflow.model".to_owned(), source };
+    let disk = trimmed.disk_loads(case.tip_mach()).map_err(at_wake)?;
     Ok(FoundWake {
+        disk: Some(disk),
         result: result_of(&case, wake),
         wake: wake.wake.clone(),
         circulation: wake.moving.clone(),
@@ -238,5 +243,5 @@ fn prescribed(
         warnings,
         ..settings_of(&wake)
     };
-    Ok(FoundWake { result, wake, circulation, inflow: map })
+    Ok(FoundWake { result, wake, circulation, inflow: map, disk: None })
 }

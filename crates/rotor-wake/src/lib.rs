@@ -64,8 +64,8 @@ pub use vector::Vec3;
 pub use wake::{
     CirculationSlope, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
     FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, LineInduction, MotionSlope,
-    NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, WakeFilament, WakeMarch, WakeMethod,
-    WakeSymmetry,
+    NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, VortexCrossing, WakeFilament,
+    WakeMarch, WakeMethod, WakeSymmetry,
 };
 
 /// The example of the crate's README, run as a documentation test.

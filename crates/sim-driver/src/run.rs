@@ -99,6 +99,7 @@ pub fn run_trimmed(
     let blade_loads = trimmed
         .station_loads(&loaded.case.load_stations_r())
         .map_err(|source| at("response.load_stations_r", source))?;
+    let disk = trimmed.disk_loads(loaded.case.tip_mach()).map_err(|source| at("rotor", source))?;
     let mut warnings = loaded.warnings.clone();
     warnings.extend(powerless);
     warnings.extend(actuators.warnings.iter().cloned());
@@ -122,6 +123,7 @@ pub fn run_trimmed(
         residuals: residuals(found),
         baseline: Baseline { hub_nb_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales()),
+        disk: Some(disk),
         stability,
         unlike_blades,
         each_unlike_blade: each_unlike,

@@ -2,7 +2,7 @@
 
 use crate::response::revolution::unit_weights;
 use crate::response::wake_loading::{
-    between, circulation, of_harmonics, panel_means, resolved_harmonics, shares,
+    between, circulation, of_harmonics, over_panels, panel_means, resolved_harmonics, shares,
 };
 use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::{DMatrix, DVector};
@@ -28,6 +28,21 @@ impl RotorSolver {
         azimuths: usize,
     ) -> Result<CirculationMap, ResponseError> {
         circulation(self.rotor(), &self.time, &solution.lifting, wake_rotor, azimuths)
+    }
+
+    /// Lift of the air per length of one blade on the panels and azimuths of a wake, along the shaft, up positive,
+    /// `m0 Omega^2 R`, azimuth by azimuth: the mean over each panel. Its sum over the widths and mean over the azimuths,
+    /// times the number of blades, is the thrust but for what the deflection of the blades turns of the other forces.
+    pub fn thrust_per_length(
+        &self,
+        solution: &RotorSolution,
+        wake_rotor: &WakeRotor,
+        azimuths: usize,
+    ) -> Vec<f64> {
+        let (rotor, along_shaft) = (self.rotor(), self.rotor().blade().precone.cos());
+        let grid = (wake_rotor, azimuths);
+        let up = over_panels(rotor, &self.time, &solution.lifting, grid, |l| along_shaft * l.lift);
+        up.transpose().as_slice().to_vec()
     }
 
     /// How the circulation at the panels and azimuths of a wake answers to the inflow there: prompt lift and lags of the attached sections in the speed of the rigid blade, over tables too.

@@ -68,8 +68,29 @@ pub(crate) fn panel_means(grid: &SpanGrid, lifting: usize, panels: &WakeRotor) -
     })
 }
 
-/// Circulation of the panels of a wake: its mean over each, and in azimuth by the harmonics that both the wake's azimuths
-/// and the time elements resolve.
+/// A property of the lifting sections on the panels of a wake: its mean over each, and in azimuth by the harmonics that both
+/// the wake's azimuths and the time elements resolve. A row for each azimuth.
+pub(crate) fn over_panels(
+    rotor: &Rotor,
+    time: &TimeElements,
+    lifting: &[Vec<Lifting>],
+    (panels, azimuths): (&WakeRotor, usize),
+    property: impl Fn(&Lifting) -> f64,
+) -> DMatrix<f64> {
+    let stations = lifting.first().map_or(0, Vec::len);
+    let means = panel_means(rotor.blade().grid(), stations, panels);
+    let weights = unit_weights(time);
+    let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
+    let history =
+        DMatrix::from_fn(lifting.len(), stations, |p, s| weights[p] * property(&lifting[p][s]));
+    let history = history * means.transpose();
+    // mean, then cosine and sine of every harmonic
+    let mut coefficients = waves(harmonics, time.points()).tr_mul(&history);
+    coefficients.rows_mut(1, 2 * harmonics).scale_mut(2.0);
+    waves(harmonics, &uniform_azimuths_rad(azimuths)) * coefficients
+}
+
+/// Circulation of the panels of a wake.
 pub(crate) fn circulation(
     rotor: &Rotor,
     time: &TimeElements,
@@ -77,17 +98,7 @@ pub(crate) fn circulation(
     wake_rotor: &WakeRotor,
     azimuths: usize,
 ) -> Result<CirculationMap, ResponseError> {
-    let stations = lifting.first().map_or(0, Vec::len);
-    let means = panel_means(rotor.blade().grid(), stations, wake_rotor);
-    let weights = unit_weights(time);
-    let harmonics = resolved_harmonics(time, &weights, (azimuths - 1) / 2);
-    let history =
-        DMatrix::from_fn(lifting.len(), stations, |p, s| weights[p] * lifting[p][s].circulation);
-    let history = history * means.transpose();
-    // mean, then cosine and sine of every harmonic
-    let mut coefficients = waves(harmonics, time.points()).tr_mul(&history);
-    coefficients.rows_mut(1, 2 * harmonics).scale_mut(2.0);
-    let values = waves(harmonics, &uniform_azimuths_rad(azimuths)) * coefficients;
+    let values = over_panels(rotor, time, lifting, (wake_rotor, azimuths), |l| l.circulation);
     Ok(CirculationMap::from_fn(azimuths, wake_rotor.panels(), |i, s| values[(i, s)])?)
 }
 

@@ -19,6 +19,9 @@ use trim::{HorizontalTail, TrimSettings, TrimTarget, Vehicle, WakeTrimSettings};
 /// Stations outboard of the root at which the loads are given unless a case says others, R.
 const USUAL_STATIONS_R: [f64; 3] = [0.25, 0.5, 0.75];
 
+/// Planes in which tip vortices are given unless a case says others, on both sides of the rotor, R.
+const USUAL_PLANES_R: [f64; 4] = [0.4, 0.7, 0.85, 0.97];
+
 /// Standard gravity, m/s^2.
 const GRAVITY_M_S2: f64 = 9.806_65;
 
@@ -212,6 +215,15 @@ impl Case {
         self.response.load_stations_r.clone().unwrap_or_else(|| {
             let outboard = USUAL_STATIONS_R.into_iter().filter(|station| *station > root + 1e-3);
             std::iter::once(root).chain(outboard).collect()
+        })
+    }
+
+    /// Planes of constant `Y` in which the tip vortices of a free wake are asked for, R, starboard positive, in the order of
+    /// the case; 0.4, 0.7, 0.85 and 0.97 on both sides, from port, unless the case says others.
+    pub fn vortex_planes_y_r(&self) -> Vec<f64> {
+        self.response.vortex_planes_y_r.clone().unwrap_or_else(|| {
+            let port = USUAL_PLANES_R.into_iter().rev().map(|y| -y);
+            port.chain(USUAL_PLANES_R).collect()
         })
     }
 

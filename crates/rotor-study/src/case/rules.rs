@@ -242,14 +242,29 @@ fn check_response(check: &mut Checker, case: &Case) {
     let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
     check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
     let root = case.rotor.root_offset_r;
-    let stations = r.load_stations_r.as_deref().unwrap_or_default();
-    for (i, &station) in stations.iter().enumerate() {
-        let field = format!("response.load_stations_r[{i}]");
-        let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
-        check.within(&field, station, (root, 1.0), "R", remedy);
-        if let Some(first) = stations[..i].iter().position(|s| (s - station).abs() < 1e-9) {
+    let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
+    let stations = r.load_stations_r.as_deref();
+    check_places(check, ("load_stations_r", "station"), stations, (root, 1.0), remedy);
+    let remedy = "a plane that vortices cut: starboard of the hub positive, the tip at 1";
+    let planes = r.vortex_planes_y_r.as_deref();
+    check_places(check, ("vortex_planes_y_r", "plane"), planes, (-1.5, 1.5), remedy);
+}
+
+/// A list of stations or planes of the response in a range, R, each once.
+fn check_places(
+    check: &mut Checker,
+    (field, kind): (&str, &str),
+    places: Option<&[f64]>,
+    range: (f64, f64),
+    remedy: &'static str,
+) {
+    let places = places.unwrap_or_default();
+    for (i, &place) in places.iter().enumerate() {
+        let field = format!("response.{field}[{i}]");
+        check.within(&field, place, range, "R", remedy);
+        if let Some(first) = places[..i].iter().position(|s| (s - place).abs() < 1e-9) {
             let message = format!(
-                "the station {station} R is in the list already (number {}); name each station once",
+                "the {kind} {place} R is in the list already (number {}); name each {kind} once",
                 first + 1
             );
             check.refuse(&field, message);

@@ -298,6 +298,10 @@ section! {
         /// none.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub load_stations_r: Option<Vec<f64>> = None, Rule("`root_offset_r` to 1, each once"), "R", "";
+        /// Planes of constant `Y` (starboard of the hub positive) in which a free wake's tip vortices are given; left out:
+        /// 0.4, 0.7, 0.85 and 0.97 on both sides; `[]` for none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub vortex_planes_y_r: Option<Vec<f64>> = None, Rule("-1.5 to 1.5, each once"), "R", "";
     }
 }
 

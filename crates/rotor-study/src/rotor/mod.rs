@@ -2,6 +2,7 @@
 
 mod authority;
 mod continuation;
+mod disk;
 mod hinge_response;
 mod inflow;
 mod once;
@@ -12,6 +13,7 @@ mod trimmed;
 
 pub use authority::FlapAuthority;
 pub use continuation::continued_trim;
+pub use disk::DiskLoads;
 pub use inflow::{SettledTrim, WakeStatus, settled_trim, wake_status, wake_warnings};
 pub(crate) use inflow::{descent_warning, passage_warning};
 pub use reconverged::ReconvergedAuthority;

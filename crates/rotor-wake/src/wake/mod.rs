@@ -1,5 +1,6 @@
 //! The free vortex wake on the grid of azimuth and wake age.
 
+mod crossing;
 mod filament;
 mod free_wake;
 mod influence;
@@ -12,6 +13,7 @@ mod sources;
 mod sweep;
 mod velocity;
 
+pub use crossing::VortexCrossing;
 pub use free_wake::{FreeWake, WakeFilament};
 pub use influence::{CirculationSlope, FrozenWake, LineInduction, MotionSlope};
 pub use march::WakeMarch;

@@ -370,18 +370,6 @@ fn problems_of_the_blade_name_the_remedy() {
             "rotor.tables.mass[2]: is refused: the station 0.5 R is given twice, as number 2 and number 3",
         ),
         (
-            "(response: (load_stations_r: [0.5, 1.2]))",
-            "response.load_stations_r[1]: is 1.2 R, expected 0 to 1 R",
-        ),
-        (
-            "(rotor: (root_offset_r: 0.05), response: (load_stations_r: [0.01]))",
-            "response.load_stations_r[0]: is 0.01 R, expected 0.05 to 1 R",
-        ),
-        (
-            "(response: (load_stations_r: [0.5, 0.25, 0.5]))",
-            "response.load_stations_r[2]: is refused: the station 0.5 R is in the list already (number 1)",
-        ),
-        (
             "(rotor: (tables: (mass: [(0, 1), (0.9, 1)])))",
             "rotor.tables.mass: is refused: the table reaches from 0 R to 0.9 R, the blade from 0 R to 1 R",
         ),
@@ -400,6 +388,34 @@ fn problems_of_the_blade_name_the_remedy() {
         (
             "(rotor: (dissimilar_blades: [(blade: 2, mass: 3)]))",
             "rotor.dissimilar_blades[0].mass: is 3, expected 0.5 to 2",
+        ),
+    ] {
+        says(text, expected);
+    }
+}
+
+#[test]
+fn places_of_results_are_in_range_each_once() {
+    for (text, expected) in [
+        (
+            "(response: (load_stations_r: [0.5, 1.2]))",
+            "response.load_stations_r[1]: is 1.2 R, expected 0 to 1 R",
+        ),
+        (
+            "(rotor: (root_offset_r: 0.05), response: (load_stations_r: [0.01]))",
+            "response.load_stations_r[0]: is 0.01 R, expected 0.05 to 1 R",
+        ),
+        (
+            "(response: (load_stations_r: [0.5, 0.25, 0.5]))",
+            "response.load_stations_r[2]: is refused: the station 0.5 R is in the list already (number 1)",
+        ),
+        (
+            "(response: (vortex_planes_y_r: [0.4, -1.6]))",
+            "response.vortex_planes_y_r[1]: is -1.6 R, expected -1.5 to 1.5 R",
+        ),
+        (
+            "(response: (vortex_planes_y_r: [0.4, 0.4]))",
+            "response.vortex_planes_y_r[1]: is refused: the plane 0.4 R is in the list already (number 1)",
         ),
     ] {
         says(text, expected);

@@ -9,6 +9,7 @@ use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::print::airloads::{airloads_csv, tip_csv};
 use crate::print::blade_loads::blade_loads_csv;
+use crate::print::wake::vortices_csv;
 use crate::problem::{Fault, Place, Problems};
 use crate::progress::Progress;
 use crate::report::{StudyReport, histories_csv, report_html, robustness_csv, sensitivity_csv};
@@ -18,7 +19,7 @@ use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, swee
 use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, StudyError, robustness_maps, sensitivities};
 use std::path::{Path, PathBuf};
-use trim::TrimSolution;
+use trim::{TrimSolution, WakeTrim};
 
 /// Azimuths of the tables of airloads: every degree.
 const AZIMUTHS: usize = 360;
@@ -124,6 +125,11 @@ fn store(
     write_atomic(&out.join("blade_loads.csv"), blade_loads.as_bytes())?;
     write_atomic(&out.join("airloads.csv"), airloads.as_bytes())?;
     write_atomic(&out.join("tip.csv"), tip.as_bytes())?;
+    if let Some(WakeTrim { wake, .. }) = outcome.trimmed.wake() {
+        let (planes, radius_m) = (loaded.case.vortex_planes_y_r(), loaded.case.rotor.radius_m);
+        let vortices = vortices_csv(wake, &planes, radius_m);
+        write_atomic(&out.join("vortices.csv"), vortices.as_bytes())?;
+    }
     write_shown(&StudyReport { stored: &stored, figures }, out)?;
     Ok(stored)
 }

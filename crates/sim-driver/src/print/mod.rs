@@ -3,5 +3,6 @@
 pub mod airloads;
 pub mod blade_loads;
 pub mod modes;
+mod revolution;
 pub mod root_pitch;
 pub mod wake;

@@ -1,17 +1,52 @@
 //! `hhc wake`: a free wake as a table and as files to look at.
 
 use crate::SimError;
-use crate::case::LoadedCase;
+use crate::case::{Case, LoadedCase};
 use crate::output::{Printable, Sheet, csv_of, table_of};
-use rotor_study::{FoundWake, HubLoads, StudyError, WakeResult, WakeUpdateLine, wake_of_case};
+use crate::print::revolution::{Revolution, revolution_files};
+use rotor_study::{FoundWake, HubLoads, StudyError, WakeResult, wake_of_case};
 use rotor_wake::{
-    CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, WakeError,
-    WakeFilament,
+    CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, VortexCrossing,
+    WakeError, WakeFilament,
 };
 use std::fmt::Write as _;
 
-/// Files of a wake: name and text.
-pub type WakeFiles = Vec<(&'static str, String)>;
+/// Files of a wake: name, with a folder where it has one, and text.
+pub type WakeFiles = Vec<(String, String)>;
+
+/// Where the tip vortices of all blades cut planes of constant `Y` (R, starboard positive), as CSV text: a row for each
+/// crossing, by azimuth, plane, blade and age.
+///
+/// | column | meaning | reference and sign |
+/// |---|---|---|
+/// | `blade_azimuth_deg` | azimuth of blade 1, deg: the instant | 0 over the tail, counter-clockwise seen from above |
+/// | `plane_y_r` | the plane, `Y / R` | hub centre; starboard positive |
+/// | `age_deg` | age of the vortex at the crossing, deg of azimuth | since it left its blade, of whatever number |
+/// | `x_m`, `y_m`, `z_m` | the crossing, m, in hub axes that do not turn | hub centre; aft, starboard, up along the shaft positive |
+///
+/// At an instant blade `k` is `(k - 1) 360 / N_b` deg ahead of blade 1; the vortices of all of them stand in the rows of that
+/// instant.
+pub fn vortices_csv(wake: &FreeWake, planes_y_r: &[f64], radius_m: f64) -> String {
+    let step_deg = wake.settings().step_rad().to_degrees();
+    let instants =
+        (0..wake.settings().azimuths).flat_map(|i| planes_y_r.iter().map(move |y| (i, *y)));
+    let rows = instants.flat_map(|(i, plane)| {
+        let crossings = wake.tip_vortex_crossings(i, plane);
+        crossings.into_iter().map(move |crossing| (i as f64 * step_deg, plane, crossing))
+    });
+    let metres = |crossing: &VortexCrossing, axis: usize| radius_m * crossing.point[axis];
+    csv_of(
+        rows,
+        &[
+            ("blade_azimuth_deg", &|(azimuth, ..)| azimuth.to_string()),
+            ("plane_y_r", &|(_, plane, _)| plane.to_string()),
+            ("age_deg", &|(.., c)| format!("{:.4}", c.age_rad.to_degrees())),
+            ("x_m", &|(.., c)| format!("{:.6}", metres(c, 0))),
+            ("y_m", &|(.., c)| format!("{:.6}", metres(c, 1))),
+            ("z_m", &|(.., c)| format!("{:.6}", metres(c, 2))),
+        ],
+    )
+}
 
 /// The wake of a case with plausibility warnings about the case, and its files.
 ///
@@ -20,27 +55,21 @@ pub type WakeFiles = Vec<(&'static str, String)>;
 pub fn wake_files(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
     let doubts = || loaded.in_words(loaded.case.value_warnings());
     let found = wake_of_case(&loaded.case).and_then(|found| {
-        let FoundWake { result, wake, circulation, inflow } = found;
-        let files = files_of(&wake, &circulation, &inflow, &result.updates);
-        let files = files.map_err(|source| StudyError::Response {
+        let files = files_of(&found, &loaded.case).map_err(|source| StudyError::Response {
             field: "inflow.model".to_owned(),
             source: source.into(),
         })?;
-        Ok((result, files))
+        Ok((found.result, files))
     });
     let (mut result, files) = found.map_err(|error| loaded.located(error).in_doubt(doubts()))?;
     result.warnings.splice(0..0, doubts());
     Ok((result, files))
 }
 
-fn files_of(
-    wake: &FreeWake,
-    circulation: &CirculationMap,
-    inflow: &InducedInflow,
-    updates: &[WakeUpdateLine],
-) -> Result<WakeFiles, WakeError> {
+fn files_of(found: &FoundWake, case: &Case) -> Result<WakeFiles, WakeError> {
+    let FoundWake { result, wake, circulation, inflow, disk } = found;
     let convergence = csv_of(
-        updates,
+        &result.updates,
         &[
             ("azimuths", &|u| u.azimuths.to_string()),
             ("displacement_r", &|u| format!("{:e}", u.displacement_r)),
@@ -50,17 +79,25 @@ fn files_of(
         ],
     );
     let states = [wake.vortex_states(circulation)?, wake.trailer_states(circulation)?];
-    Ok(vec![
-        ("wake_geometry.csv", geometry_csv(wake, &states)),
-        ("wake.vtk", vtk(wake, circulation, &states)),
-        ("inflow_map.csv", inflow_csv(inflow)),
-        ("convergence.csv", convergence),
-    ])
+    let planes = case.vortex_planes_y_r();
+    let named = |name: &str, text: String| (name.to_owned(), text);
+    let mut files = vec![
+        named("wake_geometry.csv", geometry_csv(wake, &states)),
+        named("wake.vtk", vtk(wake, circulation, &states)),
+        named("vortices.csv", vortices_csv(wake, &planes, case.rotor.radius_m)),
+        named("inflow_map.csv", inflow_csv(inflow)),
+        named("convergence.csv", convergence),
+    ];
+    if let Some(disk) = disk {
+        let scales = case.scales();
+        files.extend(revolution_files(&Revolution { wake, states: &states, disk, scales }));
+    }
+    Ok(files)
 }
 
 /// What a filament carries at its nodes: that of the segment behind a node, of the last one at its end; nothing where the
 /// near wake stands for it.
-fn at_nodes(
+pub(super) fn at_nodes(
     filament: &WakeFilament,
     states: &[Vec<SegmentState>],
     azimuth: usize,

@@ -3,10 +3,13 @@
 use super::tables::HISTORY_AZIMUTHS;
 use crate::results::{ControlLine, ControlRecord, LoopRecord, SeriesLine, flap_name};
 use plotly::common::{Anchor, DashType, Line, Mode, Orientation, Title};
-use plotly::layout::{Axis, BarMode, Legend, Margin};
-use plotly::{Bar, Layout, Plot, Scatter};
+use plotly::layout::{
+    AngularAxis, Axis, BarMode, LayoutPolar, Legend, Margin, PolarDirection, RadialAxis,
+};
+use plotly::{Bar, Layout, Plot, Scatter, Trace};
 use rotor_base::uniform_azimuths_rad;
-use rotor_study::HubLoads;
+use rotor_study::{DiskLoads, HubLoads};
+use serde::Serialize;
 
 /// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
 /// (Okabe and Ito's palette).
@@ -104,5 +107,62 @@ pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
     plot.set_layout(
         layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis("amplitude, 1e-4")),
     );
+    plot
+}
+
+/// Sectors of a disk with a colour for a value each: plotly's `barpolar`, which its crate does not have.
+#[derive(Debug, Clone, Serialize)]
+struct DiskTrace {
+    r#type: &'static str,
+    /// Inner radius and depth of a sector.
+    base: Vec<f64>,
+    r: Vec<f64>,
+    /// Azimuth of its middle and its angle, deg.
+    theta: Vec<f64>,
+    width: Vec<f64>,
+    /// Radius of its middle.
+    customdata: Vec<f64>,
+    marker: DiskColours,
+    hovertemplate: String,
+}
+
+#[derive(Debug, Clone, Serialize)]
+struct DiskColours {
+    color: Vec<f64>,
+    colorscale: &'static str,
+    showscale: bool,
+}
+
+impl Trace for DiskTrace {
+    fn to_json(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+/// A value over the disk, seen from above with the flight up the page: azimuth 0 below, 90 deg to the right.
+pub(super) fn disk_chart(disk: &DiskLoads, values: &[f64], unit: &str) -> Plot {
+    let (panels, stations) = (disk.panels(), disk.stations_r());
+    let step_deg = 360.0 / disk.azimuths() as f64;
+    let of_panel = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..values.len()).map(|at| value(at % panels)).collect()
+    };
+    let mut plot = Plot::new();
+    plot.add_trace(Box::new(DiskTrace {
+        r#type: "barpolar",
+        base: of_panel(&|k| disk.edges_r[k]),
+        r: of_panel(&|k| disk.edges_r[k + 1] - disk.edges_r[k]),
+        theta: (0..values.len()).map(|at| (at / panels) as f64 * step_deg).collect(),
+        width: vec![step_deg; values.len()],
+        customdata: of_panel(&|k| stations[k]),
+        marker: DiskColours { color: values.to_vec(), colorscale: "Viridis", showscale: true },
+        hovertemplate: format!(
+            "azimuth %{{theta}} deg, %{{customdata:.3f}} R<br>%{{marker.color:.4g}}{unit}<extra></extra>"
+        ),
+    }));
+    let angle = AngularAxis::new().direction(PolarDirection::Counterclockwise).rotation(270.0);
+    let radius = RadialAxis::new().range([0.0, 1.0].map(Into::into));
+    let polar =
+        LayoutPolar::new().bg_color("rgba(0,0,0,0)").angular_axis(angle).radial_axis(radius);
+    plot.set_layout(layout().polar(polar));
     plot
 }

@@ -1,12 +1,13 @@
 //! The page around the charts.
 
-use super::charts::{azimuth_chart, load_chart, loop_chart};
+use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart};
 use super::{Section, StudyReport, assumptions, state_lines};
 use crate::results::{BenchPart, by_set, set_name};
 use crate::stored_actuator::StoredFit;
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use plotly::Plot;
 use preisach_dyn::identify::RecordUse;
+use rotor_study::DiskLoads;
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
 pub fn report_html(report: &StudyReport<'_>) -> String {
@@ -61,6 +62,7 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
                 }
             }
         }
+        @if let Some(disk) = &stored.result.disk { (charts.disk(disk)) }
         @if !bench.loops.is_empty() {
             section {
                 h2 { "Actuator on the bench: measured against simulated" }
@@ -144,6 +146,13 @@ impl Render for Section {
     }
 }
 
+/// Least and largest value.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    values
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(*v), high.max(*v)])
+}
+
 /// A frequency without needless digits.
 fn short(value: f64) -> String {
     let text = format!("{value:.2}");
@@ -165,6 +174,28 @@ impl Charts {
             figure {
                 figcaption { strong { (title) } @if !note.is_empty() { br; span.note { (note) } } }
                 div class=(class) id=(id) {}
+            }
+        }
+    }
+
+    /// Section lift and induced velocity over the disk.
+    fn disk(&mut self, disk: &DiskLoads) -> Markup {
+        let maps = [
+            ("Section lift C_n M^2", &disk.cn_m2, ""),
+            ("Induced velocity, m/s", &disk.induced_m_s, " m/s"),
+        ];
+        html! {
+            section {
+                h2 { "Over the disk" }
+                p { "Flaps at rest. Seen from above, flight up the page: azimuth 0 over the tail is below, 90 deg to "
+                    "the right. Lift normal to the chord up positive, induced velocity down positive." }
+                div.grid.wide {
+                    @for (title, values, unit) in maps {
+                        @let [low, high] = extremes(values);
+                        @let note = format!("{low:.4} to {high:.4}{unit}");
+                        (self.figure("chart tall", title, &note, &disk_chart(disk, values, unit)))
+                    }
+                }
             }
         }
     }

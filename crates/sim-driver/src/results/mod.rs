@@ -17,7 +17,7 @@ pub use figures::{ControlLine, Figures, FlapLine, figures};
 pub use stored::{RESULT_FILE, StoredResult};
 
 use rotor_study::{
-    ForecastLine, HubLoads, RobustnessCell, Sensitivity, StabilityLine, StationLine,
+    DiskLoads, ForecastLine, HubLoads, RobustnessCell, Sensitivity, StabilityLine, StationLine,
     UnlikeBladeLine, UnlikeLine, WakeStatus,
 };
 use serde::{Deserialize, Serialize};
@@ -44,6 +44,10 @@ pub struct RunResult {
     /// results stored before they were.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blade_loads: Vec<StationLine>,
+    /// Loads of the air and induced velocity over the disk without control, of the like blades where some are dissimilar;
+    /// none in results stored before they were.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disk: Option<DiskLoads>,
     /// Stability of the trimmed blade, of each of the like ones where some are dissimilar.
     #[serde(default)]
     pub stability: StabilityLine,

@@ -4,6 +4,7 @@
 
 mod bad_input;
 mod commands;
+mod disk;
 mod identify;
 mod import;
 mod place;

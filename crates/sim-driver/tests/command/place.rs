@@ -128,6 +128,11 @@ pub(crate) const QUICK_CASE: &str = "(
 )
 ";
 
+/// A small free wake: steps of 30 deg, two turns, eight panels.
+pub(crate) const SMALL_WAKE: &str =
+    "FreeWake(azimuths: 12, turns: 2, panels: 8, core_r: 0.05, near_core_r: 0.05, tolerance: 0.002,
+        rolled_up: TipRootAndSheet, control_point: ThreeQuarterChord)";
+
 /// A small bench: one slow loop, one faster one at two amplitudes.
 pub(crate) fn write_bench(place: &Place, folder: &str) {
     let mut runs = String::new();

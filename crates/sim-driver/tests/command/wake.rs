@@ -1,11 +1,6 @@
 //! `hhc wake`: a case trimmed in its free wake.
 
-use crate::place::{Place, QUICK_CASE};
-
-/// A small wake: steps of 30 deg, two turns, eight panels.
-const SMALL_WAKE: &str =
-    "FreeWake(azimuths: 12, turns: 2, panels: 8, core_r: 0.05, near_core_r: 0.05, tolerance: 0.002,
-        rolled_up: TipRootAndSheet, control_point: ThreeQuarterChord)";
+use crate::place::{Place, QUICK_CASE, SMALL_WAKE};
 
 fn small_case() -> String {
     QUICK_CASE.replace("(model: Uniform)", &format!("(model: {SMALL_WAKE})"))

@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use rotor_base::{Harmonic, HarmonicSeries, harmonic_waves, uniform_azimuths_rad, wrap_degrees};
 use rotor_response::{SectionAirload, StationAirloads, TipMotion};
 use rotor_study::{ModesQuestion, TrimmedRotor, rotating_modes};
+use rotor_wake::FreeWake;
 use sim_driver::case::{Case, FreeWakeValues, InflowChoice, shipped_case};
 use validation::{Check, Failure, Table, row, shared, too_few};
 
@@ -122,8 +123,7 @@ struct Flown {
     station: StationAirloads,
     tip: Vec<TipMotion>,
     radius_m: f64,
-    /// Nodes of the tip vortex in hub axes, unit R, by azimuth of its blade and age.
-    tip_vortex: Vec<Vec<[f64; 3]>>,
+    wake: FreeWake,
 }
 
 fn flown(case: &str, change: impl Fn(&mut Case)) -> Result<Flown, Failure> {
@@ -132,9 +132,9 @@ fn flown(case: &str, change: impl Fn(&mut Case)) -> Result<Flown, Failure> {
     let rotor = TrimmedRotor::new(&case, None)?;
     let (stations, tip) = rotor.airloads(&[STATION], case.tip_mach(), AZIMUTHS)?;
     let station = stations.into_iter().next().ok_or_else(|| too_few("stations", 0, 1))?;
-    let vortex = rotor.wake().and_then(|trim| trim.wake.vortices().pop());
-    let tip_vortex = vortex.ok_or_else(|| too_few("vortices", 0, 1))?.points;
-    Ok(Flown { station, tip, radius_m: case.rotor.radius_m, tip_vortex })
+    let wake = rotor.wake().map(|trim| trim.wake.clone());
+    let wake = wake.ok_or_else(|| too_few("wakes", 0, 1))?;
+    Ok(Flown { station, tip, radius_m: case.rotor.radius_m, wake })
 }
 
 /// Gives a case a free wake of another near wake and number of steps, and as many time points as these need.
@@ -364,7 +364,8 @@ const SAME_VORTEX: f64 = 0.12;
 /// Vertical rms distance of measured vortex centres from where the tip vortices of the wake cross the same vertical plane
 /// along the flight, percent of R.
 fn vertical_distance(flown: &Flown) -> Result<f64, Failure> {
-    let vortex = &flown.tip_vortex;
+    let settings = flown.wake.settings();
+    let step = settings.step_rad().to_degrees();
     let table = Table::read("../measured/hart_ii/vortex_centres.csv")?;
     let (mut square, mut count) = (0.0, 0);
     for row in table.rows() {
@@ -375,22 +376,12 @@ fn vertical_distance(flown: &Flown) -> Result<f64, Failure> {
             .map(|c| c / flown.radius_m);
         let azimuth = row.number("azimuth_deg")?;
         let mut nearest: Option<[f64; 2]> = None;
-        // those of the four blades when the first is at that azimuth
-        let step = 360.0 / vortex.len() as f64;
-        let is_seen = |i: usize| {
-            let quarters = (i as f64 * step - azimuth) / 90.0;
-            (quarters - quarters.round()).abs() * 90.0 < 0.5 * step
-        };
-        for nodes in (0..vortex.len()).filter(|i| is_seen(*i)).map(|i| &vortex[i]) {
-            for pair in nodes.windows(2) {
-                let [a, b] = [pair[0], pair[1]];
-                if (a[1] - y) * (b[1] - y) < 0.0 {
-                    let t = (y - a[1]) / (b[1] - a[1]);
-                    let [along, up] = [0, 2].map(|c| a[c] + t * (b[c] - a[c]));
-                    if nearest.is_none_or(|[best, _]| (along - x).abs() < (best - x).abs()) {
-                        nearest = Some([along, up]);
-                    }
-                }
+        // those of all blades with the first at that azimuth
+        let seen = (0..settings.azimuths).find(|i| (*i as f64 * step - azimuth).abs() < 0.5 * step);
+        for crossing in seen.iter().flat_map(|i| flown.wake.tip_vortex_crossings(*i, y)) {
+            let [along, _, up] = crossing.point;
+            if nearest.is_none_or(|[best, _]| (along - x).abs() < (best - x).abs()) {
+                nearest = Some([along, up]);
             }
         }
         if let Some([_, up]) = nearest.filter(|[along, _]| (along - x).abs() <= SAME_VORTEX) {
