@@ -4,8 +4,10 @@
 
 mod bad_input;
 mod commands;
+mod compare;
 mod identify;
 mod import;
+mod measured;
 mod place;
 mod rotor;
 mod screen;
