@@ -14,6 +14,7 @@
 //! | assumptions changed one at a time | `sensitivity` |
 //! | modes, stability, loads, dissimilar blades | `blade` |
 //! | the free wake of a case | `wake` |
+//! | measured airloads, tip motion and vortices beside the computed ones | `measured` |
 
 mod blade;
 pub mod case;
@@ -21,6 +22,7 @@ mod control;
 mod error;
 mod flaps;
 mod loads;
+mod measured;
 mod plant;
 mod rotor;
 mod sensitivity;
@@ -32,6 +34,7 @@ pub use control::*;
 pub use error::StudyError;
 pub use flaps::*;
 pub use loads::{HubLoads, Setting, is_still, loads_cost};
+pub use measured::*;
 pub use plant::*;
 pub use rotor::*;
 pub use sensitivity::{

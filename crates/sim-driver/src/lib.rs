@@ -13,6 +13,7 @@
 //! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
 //! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
+//! | two results side by side | [`compare`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
 
@@ -21,6 +22,7 @@ pub mod case;
 pub mod check;
 mod choices;
 pub mod cli;
+pub mod compare;
 pub mod curve_identification;
 pub mod diagnose;
 mod error;

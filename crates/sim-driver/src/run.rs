@@ -3,14 +3,17 @@
 use crate::SimError;
 use crate::actuator::{CaseActuators, case_actuators};
 use crate::case::LoadedCase;
+use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
 use crate::results::{
-    Baseline, ControlRecord, Figures, MeanHubLoads, Residuals, RunResult, TrimLine, figures,
+    Baseline, BenchPart, ControlRecord, CurveLine, Figures, MeanHubLoads, MeasuredPart, Residuals,
+    RunResult, StoredResult, TrimLine, figures, same_station,
 };
 use crate::sweep::continued_trim;
-use rotor_response::StationLoads;
+use rotor_response::{StationAirloads, StationLoads, TipMotion};
 use rotor_study::{
-    ControlStudy, Drives, HubLoads, Setting, StabilityLine, StudyError, TrimmedRotor, control_all,
+    CURVE_AZIMUTHS, ControlStudy, Drives, HubLoads, Setting, StabilityLine, StudyError,
+    TrimmedRotor, VortexComparison, compare_vortices, computed_curves, control_all,
     each_unlike_blade, forecasts, station_lines, unlike_lines, wake_status, wake_warnings,
 };
 use std::sync::Arc;
@@ -29,6 +32,10 @@ pub struct RunOutcome {
     pub trimmed: TrimmedRotor,
     /// Loads of one blade at the stations of the case, flaps at rest.
     pub blade_loads: Vec<StationLoads>,
+    /// Air on the sections at every degree: at those stations of the case and of its measured data that carry air.
+    pub airloads: Vec<StationAirloads>,
+    /// Motion of the blade tip, every degree.
+    pub tip: Vec<TipMotion>,
     /// The drives of the flaps with their stroke limits.
     pub drives: Drives,
     /// Every control study, in the order of the result.
@@ -100,7 +107,13 @@ pub fn run_trimmed(
         .station_loads(&loaded.case.load_stations_r())
         .map_err(|source| at("response.load_stations_r", source))?;
     let disk = trimmed.disk_loads(loaded.case.tip_mach()).map_err(|source| at("rotor", source))?;
+    let stations = airload_stations_r(loaded);
+    let found = trimmed.airloads(&stations, loaded.case.tip_mach(), CURVE_AZIMUTHS);
+    let (airloads, tip) = found.map_err(|source| at("response.load_stations_r", source))?;
+    let curves = computed_curves(&airloads, &tip);
+    let vortices = vortex_comparison(loaded, &trimmed);
     let mut warnings = loaded.warnings.clone();
+    warnings.extend(vortices.is_none().then(|| no_vortices(loaded)).flatten());
     warnings.extend(powerless);
     warnings.extend(actuators.warnings.iter().cloned());
     let found = trimmed.trim();
@@ -124,6 +137,8 @@ pub fn run_trimmed(
         baseline: Baseline { hub_nb_per_rev: baseline },
         blade_loads: station_lines(&blade_loads, &loaded.case.scales()),
         disk: Some(disk),
+        curves: curves.iter().map(CurveLine::of).collect(),
+        measured: MeasuredPart::of(&loaded.measured, &curves, vortices),
         stability,
         unlike_blades,
         each_unlike_blade: each_unlike,
@@ -132,7 +147,54 @@ pub fn run_trimmed(
         warnings,
         ..RunResult::default()
     };
-    Ok(RunOutcome { result, setting, actuators, trimmed, blade_loads, drives, studies })
+    Ok(RunOutcome {
+        result,
+        setting,
+        actuators,
+        trimmed,
+        blade_loads,
+        airloads,
+        tip,
+        drives,
+        studies,
+    })
+}
+
+/// The result of a run with its case and the hashes of its inputs, as it is stored.
+///
+/// # Errors
+/// As [`StoredResult::new`], and [`SimError::Actuator`] if a model cannot follow a bench record.
+pub fn stored_of(loaded: &LoadedCase, outcome: &RunOutcome) -> Result<StoredResult, SimError> {
+    let bench = BenchPart::of(&outcome.actuators)?;
+    let inputs = [outcome.actuators.inputs.as_slice(), &loaded.measured.inputs].concat();
+    StoredResult::new(&loaded.case, inputs, bench, outcome.result.clone())
+}
+
+/// Stations of the case that carry air, and those of its measured airloads.
+fn airload_stations_r(loaded: &LoadedCase) -> Vec<f64> {
+    let mut stations = loaded.case.load_stations_r();
+    stations.retain(|station| *station >= loaded.case.rotor.root_cutout_r);
+    for measured in loaded.measured.curves.iter().filter_map(|curve| curve.station_r) {
+        if !stations.iter().any(|own| same_station(Some(*own), Some(measured))) {
+            stations.push(measured);
+        }
+    }
+    stations
+}
+
+/// Measured centres of vortices beside the tip vortices of the wake; none without either.
+fn vortex_comparison(loaded: &LoadedCase, trimmed: &TrimmedRotor) -> Option<VortexComparison> {
+    let centres = &loaded.measured.vortex_centres;
+    let found = compare_vortices(centres, &trimmed.wake()?.wake);
+    (found.compared > 0).then_some(found)
+}
+
+/// Why measured vortices are compared with nothing, if there are any.
+fn no_vortices(loaded: &LoadedCase) -> Option<String> {
+    let message = "no computed tip vortex is near a measured centre: nothing is compared; give inflow: (model: FreeWake()), and centres in m, hub axes (aft, starboard, up)";
+    let place = loaded.index.place("measured.vortex_centres");
+    let problem = Problem::new(place, Fault::Other(message.to_owned()));
+    (!loaded.measured.vortex_centres.is_empty()).then(|| problem.to_string())
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

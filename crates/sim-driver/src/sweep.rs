@@ -1,7 +1,7 @@
 //! A case at several advance ratios, each trim started from the last.
 
 use crate::SimError;
-use crate::case::LoadedCase;
+use crate::case::{LoadedCase, MeasuredRotor};
 use crate::output::{Printable, Sheet, table};
 use crate::results::Figures;
 use rotor_study::{TrimmedRotor, WakeStatus};
@@ -9,9 +9,15 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use trim::TrimSolution;
 
-/// A case at another advance ratio.
+/// Largest difference of advance ratios that are the same.
+const SAME_FLIGHT: f64 = 1e-9;
+
+/// A case at another advance ratio. What was measured at its own is left out.
 pub fn at_advance_ratio(loaded: &LoadedCase, advance_ratio: f64) -> LoadedCase {
     let mut moved = loaded.clone();
+    if (advance_ratio - loaded.case.advance_ratio).abs() > SAME_FLIGHT {
+        moved.measured = MeasuredRotor::default();
+    }
     moved.case.advance_ratio = advance_ratio;
     moved
 }

@@ -8,7 +8,7 @@
 //! | idea | module |
 //! |---|---|
 //! | a field stated once: name, default, range, unit, remedy, meaning | `field` |
-//! | sections of a case | `sections`, `blade`, `wake`, `control` |
+//! | sections of a case | `sections`, `blade`, `wake`, `control`, `measured` |
 //! | rules between fields, and [`Case::check`] | `rules`, `rules_blade` |
 //! | what is wrong with a value, and where | `fault` |
 //! | values into the models of the crates below | `models` |
@@ -19,6 +19,7 @@ mod checker;
 mod control;
 mod fault;
 mod field;
+mod measured;
 mod models;
 mod plausibility;
 mod rules;
@@ -37,6 +38,7 @@ pub use control::{
 };
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
+pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection};
 pub use plausibility::PlausibilityWarning;
 pub use sections::{
     AerodynamicsValues, AirfoilStation, Case, CompressibilityChoice, CouplingsChoice,

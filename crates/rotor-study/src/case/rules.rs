@@ -241,6 +241,12 @@ fn check_response(check: &mut Checker, case: &Case) {
     let least = case.rotor.blades.min(64);
     let remedy = "12 is usual; at least the blade number, whose harmonic reaches the hub";
     check.count("response.load_harmonics", r.load_harmonics, (least, 64), remedy);
+    for (i, section) in case.measured.airloads.iter().enumerate() {
+        let field = format!("measured.airloads[{i}].station_r");
+        let remedy = "a station that carries air, from rotor.root_cutout_r to 1";
+        let range = (case.rotor.root_cutout_r, 1.0);
+        check.within(&field, section.station_r, range, "R", remedy);
+    }
     let root = case.rotor.root_offset_r;
     let remedy = "a station of the blade: the root is rotor.root_offset_r, the tip is 1";
     let stations = r.load_stations_r.as_deref();

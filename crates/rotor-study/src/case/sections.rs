@@ -4,7 +4,10 @@
 //! nondimensional form, as its unit says. Most defaults are the paper's values.
 
 use super::field::{is_default, section, values};
-use super::{ActuatorValues, ControlValues, FlapValues, FreeWakeValues, RotorValues, TrimValues};
+use super::{
+    ActuatorValues, ControlValues, FlapValues, FreeWakeValues, MeasuredFiles, RotorValues,
+    TrimValues,
+};
 use flap_aero::{AirfoilSpan, AttachedFlowModel, StallAirfoil};
 use rotor_base::RotorScales;
 use rotor_fem::{ModalBasis, TwistAngle, Untwist};
@@ -47,6 +50,9 @@ section! {
         pub response: ResponseValues = ResponseValues::default(), Any, "", "";
         /// Tolerances of the solvers.
         pub tolerances: ToleranceValues = ToleranceValues::default(), Any, "", "";
+        /// Measured data of the flight.
+        #[serde(skip_serializing_if = "is_default")]
+        pub measured: MeasuredFiles = MeasuredFiles::default(), Any, "", "";
     }
 }
 

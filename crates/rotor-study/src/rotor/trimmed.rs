@@ -27,11 +27,7 @@ const ROUGHLY_LINEAR: f64 = 3e-4;
 #[derive(Debug, Clone)]
 pub struct TrimmedRotor {
     pub(super) solver: RotorSolver,
-<<<<<<< HEAD
     pub(super) inflow: Arc<dyn InflowModel>,
-=======
-    inflow: Arc<dyn InflowModel>,
->>>>>>> h1
     pub(super) trim: TrimSolution,
     scales: RotorScales,
     /// Inflow in the T of the linearised rotor.

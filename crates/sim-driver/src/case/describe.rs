@@ -8,9 +8,10 @@ use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
     Case, ControlValues, DissimilarBlade, EffectivenessValues, Field, FlapValues, FreeWakeValues,
-    HorizontalTailValues, InflowValues, LoadWeights, ModeNumbers, PitchHarmonic,
-    PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues,
-    Section, StructureValues, ToleranceValues, Value, Visitor, WindTunnelTrim,
+    HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile, MeasuredFiles, MeasuredSection,
+    ModeNumbers, PitchHarmonic, PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range,
+    ResponseValues, RotorValues, Section, StructureValues, ToleranceValues, Value, Visitor,
+    WindTunnelTrim,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -56,6 +57,9 @@ fn tables() -> String {
         table::<LoadWeights>("control.load_weights"),
         table::<ResponseValues>("response"),
         table::<ToleranceValues>("tolerances"),
+        table::<MeasuredFiles>("measured"),
+        table::<MeasuredSection>("measured.airloads"),
+        table::<MeasuredFile>("measured.tip, measured.vortex_centres"),
     ]
     .concat()
 }

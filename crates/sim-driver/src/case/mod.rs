@@ -4,18 +4,20 @@
 //! |---|---|
 //! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_study::case`] |
 //! | tables of the fields for the book, and the case of `hhc init` | `describe` |
-//! | RON text, lines of fields, old names, tables and actuators that a case names | `read`, `airfoils` |
+//! | RON text, lines of fields, old names, tables, measured files and actuators that a case names | `read`, `airfoils`, `measured` |
 //!
 //! [`read_case`] reports every problem of a file at once. A [`LoadedCase`] is the values with the places of
 //! their fields.
 
 mod airfoils;
 mod describe;
+mod measured;
 mod read;
 #[cfg(test)]
 mod tests;
 
 pub use describe::{case_format_page, starting_case};
+pub use measured::MeasuredRotor;
 pub use read::{
     ActuatorSource, CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
     with_actuator_file,

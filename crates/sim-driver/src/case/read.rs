@@ -1,6 +1,7 @@
 //! Reading cases, from disk or from the files shipped inside the program.
 
 use super::airfoils::read_airfoils;
+use super::measured::{MeasuredRotor, read_measured};
 use super::{ActuatorChoice, ActuatorPath, Case, CaseFaults, ControlActuator, PlausibilityWarning};
 use crate::SimError;
 use crate::files::{Folder, RonIndex, SHIPPED_BENCH, SHIPPED_CASES, Source, read_ron, shipped};
@@ -29,7 +30,9 @@ pub struct LoadedCase {
     pub index: RonIndex,
     /// Folder that the paths in it are relative to.
     pub folder: Folder,
-    /// Fields under a name they no longer have.
+    /// What its measured files hold.
+    pub measured: MeasuredRotor,
+    /// Fields under a name they no longer have, and measured files that are not inside the program.
     pub warnings: Vec<String>,
 }
 
@@ -102,7 +105,10 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
         case.control.actuators = vec![ControlActuator::Ideal];
     }
     match resolved(case, index, folder) {
-        Ok(loaded) => problems.into_result(Some(LoadedCase { warnings, ..loaded })),
+        Ok(loaded) => {
+            warnings.extend(loaded.measured.notes.iter().cloned());
+            problems.into_result(Some(LoadedCase { warnings, ..loaded }))
+        }
         Err(more) => {
             problems.append(more);
             problems.into_result(None)
@@ -122,7 +128,14 @@ fn resolved(mut case: Case, index: RonIndex, folder: &Folder) -> Result<LoadedCa
         Ok(tables) => case.aerodynamics.tables = tables,
         Err(more) => problems.append(more),
     }
-    let loaded = LoadedCase { case, index, folder: folder.clone(), warnings: vec![] };
+    let radius_m = case.rotor.radius_m;
+    let measured = read_measured(&case.measured, radius_m, folder, &index);
+    let measured = measured.unwrap_or_else(|more| {
+        problems.append(more);
+        MeasuredRotor::default()
+    });
+    let folder = folder.clone();
+    let loaded = LoadedCase { case, index, folder, measured, warnings: vec![] };
     let loaded = problems.into_result(Some(loaded))?;
     // what only the blade as a whole can say: flaps beside a tapered one
     match loaded.case.blade_with_flaps() {

@@ -2,8 +2,8 @@
 
 use super::{
     ActuatorSource, ActuatorValues, AerodynamicsValues, AttachedFlowModel, CompressibilityChoice,
-    CouplingsChoice, InflowChoice, LoadedCase, PAPER_CASE, StructureValues, TrimValues, read_case,
-    shipped_case,
+    CouplingsChoice, InflowChoice, LoadedCase, PAPER_CASE, StructureValues, TrimValues, load_case,
+    read_case, shipped_case,
 };
 use crate::files::{Source, ron_text, shipped};
 use approx::assert_relative_eq;
@@ -11,6 +11,7 @@ use rotor_wake::{
     ControlPoint, CoreModel, FarField, FarTrailers, ReleasePoint, ShedVorticity, WakeMethod,
     WakeSymmetry,
 };
+use std::path::Path;
 
 fn read(text: &str) -> Result<LoadedCase, String> {
     let source = Source { name: "case.ron".into(), text: text.into() };
@@ -472,4 +473,25 @@ fn weights_limits_and_harmonics_that_cannot_be_are_named_with_a_remedy() {
     let text = "#![enable(implicit_some)]\n(control: (effort: Limits, power_limit_W: 2.0, power_weight_per_W: 1e-8))";
     let control = read(text).unwrap().case.control;
     assert_eq!((control.power_limit_watt, control.power_weight_per_watt), (Some(2.0), 1e-8));
+}
+
+/// A case inside the program runs without its measured files, and says so; from its file it has them.
+#[test]
+fn measured_files_are_read_from_disk_and_noted_where_they_are_not_shipped() {
+    let inside = shipped_case("hart_ii_mn.ron").unwrap();
+    assert_eq!(inside.measured.curves.len() + inside.measured.vortex_centres.len(), 0);
+    assert_eq!(inside.warnings.len(), 4, "{:?}", inside.warnings);
+    let note = &inside.warnings[0];
+    assert!(note.contains("measured.airloads[0].file") && note.contains("run the case"), "{note}");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/cases");
+    let on_disk = load_case(&root.join("hart_ii_mn.ron")).unwrap();
+    assert!(on_disk.warnings.is_empty(), "{:?}", on_disk.warnings);
+    assert_eq!(on_disk.case, inside.case);
+    let names: Vec<&str> = on_disk.measured.curves.iter().map(|c| c.quantity.name()).collect();
+    assert_eq!(names, ["cn_m2", "cm_m2", "flap_percent_r", "elastic_twist_deg"]);
+    // the rows of this flight alone: those of the baseline begin with 0.09019
+    let series = on_disk.measured.curves[0].measured.series();
+    assert!((series.mean - 0.100_807).abs() < 1e-3, "{}", series.mean);
+    assert_eq!((series.harmonics.len(), on_disk.measured.vortex_centres.len()), (10, 43));
+    assert_eq!(on_disk.measured.inputs.len(), 4);
 }

@@ -31,6 +31,8 @@ pub struct Cli {
 pub enum Command {
     /// Trim a case and control its vibration.
     Run(RunArgs),
+    /// Two results side by side: what differs in the cases, hub loads, trim, power, J, airloads.
+    Compare(CompareArgs),
     /// Identify an actuator from bench data.
     Identify(IdentifyArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
@@ -151,6 +153,23 @@ pub struct RunArgs {
     /// Also control under noise, a wrong T and drift: robustness.csv.
     #[arg(long)]
     pub robustness: bool,
+    /// Form of the output.
+    #[command(flatten)]
+    pub format: DetailArgs,
+}
+
+/// `hhc compare`.
+#[derive(Debug, Clone, Args)]
+pub struct CompareArgs {
+    /// Folder of the results of `hhc run`, or a case file, which is run.
+    #[arg(value_name = "A")]
+    pub a: PathBuf,
+    /// The same of the result beside it; differences are B - A.
+    #[arg(value_name = "B")]
+    pub b: PathBuf,
+    /// Folder for compare.csv and compare.html.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,

@@ -1,6 +1,7 @@
 //! The `hhc` command: arguments, dispatch, exit codes.
 
 mod args;
+mod compare;
 mod data;
 mod diagnose;
 mod identify;
@@ -9,8 +10,8 @@ mod run;
 mod section;
 
 pub use args::{
-    Cli, Command, DetailArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride, ModesArgs,
-    RunArgs, SectionArgs, StudyArgs, WakeArgs,
+    Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride,
+    ModesArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;
@@ -60,6 +61,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
     match &cli.command {
         None => run::study(&cli.study),
         Some(Command::Run(args)) => run::run(args),
+        Some(Command::Compare(args)) => compare::compare(args),
         Some(Command::Identify(args)) => identify::identify(args),
         Some(Command::Diagnose(args)) => diagnose::diagnose(args),
         Some(Command::Ladder(args)) => diagnose::ladder(args),

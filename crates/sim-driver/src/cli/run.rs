@@ -12,17 +12,16 @@ use crate::print::blade_loads::blade_loads_csv;
 use crate::print::wake::vortices_csv;
 use crate::problem::{Fault, Place, Problems};
 use crate::progress::Progress;
-use crate::report::{StudyReport, histories_csv, report_html, robustness_csv, sensitivity_csv};
-use crate::results::{BenchPart, Figures, RESULT_FILE, StoredResult, figures};
-use crate::run::{RunOutcome, run_case, run_trimmed, steps_of};
+use crate::report::{
+    StudyReport, histories_csv, measured_csv, report_html, robustness_csv, sensitivity_csv,
+};
+use crate::results::{Figures, RESULT_FILE, StoredResult, figures};
+use crate::run::{RunOutcome, run_case, run_trimmed, steps_of, stored_of};
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
 use crate::terminal::{details, summary};
-use rotor_study::{Assumptions, StudyError, robustness_maps, sensitivities};
+use rotor_study::{Assumptions, robustness_maps, sensitivities};
 use std::path::{Path, PathBuf};
 use trim::{TrimSolution, WakeTrim};
-
-/// Azimuths of the tables of airloads: every degree.
-const AZIMUTHS: usize = 360;
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
@@ -116,15 +115,13 @@ fn store(
     figures: &Figures,
     out: &Path,
 ) -> Result<StoredResult, SimError> {
-    let [airloads, tip] = airloads(loaded, outcome)?;
-    let actuators = &outcome.actuators;
-    let (inputs, bench) = (actuators.inputs.clone(), BenchPart::of(actuators)?);
-    let stored = StoredResult::new(&loaded.case, inputs, bench, outcome.result.clone())?;
+    let stored = stored_of(loaded, outcome)?;
     stored.write(&out.join(RESULT_FILE))?;
     let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales());
     write_atomic(&out.join("blade_loads.csv"), blade_loads.as_bytes())?;
+    let airloads = airloads_csv(&outcome.airloads);
     write_atomic(&out.join("airloads.csv"), airloads.as_bytes())?;
-    write_atomic(&out.join("tip.csv"), tip.as_bytes())?;
+    write_atomic(&out.join("tip.csv"), tip_csv(&outcome.tip).as_bytes())?;
     if let Some(WakeTrim { wake, .. }) = outcome.trimmed.wake() {
         let (planes, radius_m) = (loaded.case.vortex_planes_y_r(), loaded.case.rotor.radius_m);
         let vortices = vortices_csv(wake, &planes, radius_m);
@@ -132,19 +129,6 @@ fn store(
     }
     write_shown(&StudyReport { stored: &stored, figures }, out)?;
     Ok(stored)
-}
-
-/// The tables of the air on the sections, at those stations of the case that lift, and of the blade tip.
-fn airloads(loaded: &LoadedCase, outcome: &RunOutcome) -> Result<[String; 2], SimError> {
-    let case = &loaded.case;
-    let mut stations = case.load_stations_r();
-    stations.retain(|station| *station >= case.rotor.root_cutout_r);
-    let found = outcome.trimmed.airloads(&stations, case.tip_mach(), AZIMUTHS);
-    let (loads, tip) = found.map_err(|source| {
-        let field = "response.load_stations_r".to_owned();
-        loaded.located(StudyError::Response { field, source })
-    })?;
-    Ok([airloads_csv(&loads), tip_csv(&tip)])
 }
 
 /// Writes what follows from a stored result: tables, picture and report.
@@ -159,6 +143,9 @@ fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
     if !figures.robustness.is_empty() {
         write("robustness.csv", &robustness_csv(&figures.robustness))?;
     }
+    if stored.result.measured.is_some() {
+        write("measured.csv", &measured_csv(figures))?;
+    }
     let finding = report.finding();
     if finding.is_drawn() {
         write("figure.svg", &finding.svg(&stored.case.title))?;
@@ -169,7 +156,11 @@ fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
 /// Shows a stored result.
 fn show(report: &StudyReport<'_>, folder: &Path, format: Format) -> Result<(), SimError> {
     print(&match format {
-        Format::Text => summary(report, folder),
+        // what was measured is asked for: it stands below the screen
+        Format::Text => {
+            let measured = report.measured().into_iter().map(|section| section.to_string());
+            summary(report, folder) + &measured.collect::<String>()
+        }
         Format::Details => format!(
             "{}{}\nResults, histories and report in {}\n",
             details(report.figures),

@@ -1,6 +1,7 @@
 //! The files shipped inside the program: the paper's cases, the synthetic bench and aerofoil.
 //!
-//! The paper's study runs from any folder because its input is part of the binary.
+//! The paper's study runs from any folder because its input is part of the binary. Measured data are not: no licence to pass
+//! them on was seen. A shipped case that names some says so and runs without them.
 
 use super::{Embedded, Folder};
 

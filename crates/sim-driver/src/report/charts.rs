@@ -1,14 +1,14 @@
 //! The charts, as plotly plots without colours of background and text: the page sets those.
 
 use super::tables::HISTORY_AZIMUTHS;
-use crate::results::{ControlLine, ControlRecord, LoopRecord, SeriesLine, flap_name};
-use plotly::common::{Anchor, DashType, Line, Mode, Orientation, Title};
+use crate::results::{ControlLine, ControlRecord, LoopRecord, MeasuredLine, SeriesLine, flap_name};
+use plotly::common::{Anchor, DashType, Line, Marker, Mode, Orientation, Title};
 use plotly::layout::{
     AngularAxis, Axis, BarMode, LayoutPolar, Legend, Margin, PolarDirection, RadialAxis,
 };
 use plotly::{Bar, Layout, Plot, Scatter, Trace};
 use rotor_base::uniform_azimuths_rad;
-use rotor_study::{DiskLoads, HubLoads};
+use rotor_study::{DiskLoads, HubLoads, MeasuredData};
 use serde::Serialize;
 
 /// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
@@ -81,6 +81,47 @@ pub(super) fn azimuth_chart(record: &ControlRecord) -> Plot {
     plot
 }
 
+/// A curve to draw: its name, dots or line, azimuths in deg, values.
+pub(super) type DrawnCurve<'a> = (&'a str, Mode, Vec<f64>, Vec<f64>);
+
+/// Curves against azimuth.
+pub(super) fn curve_chart(title: &str, curves: Vec<DrawnCurve<'_>>) -> Plot {
+    let mut plot = Plot::new();
+    for (i, (name, mode, psi_deg, values)) in curves.into_iter().enumerate() {
+        let colour = SERIES[i % SERIES.len()];
+        let trace = line(&psi_deg, &values, name, colour, DashType::Solid);
+        plot.add_trace(trace.mode(mode).marker(Marker::new().color(colour)));
+    }
+    let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
+    let azimuth = axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks);
+    plot.set_layout(layout().x_axis(azimuth).y_axis(axis(title).zero_line(false)));
+    plot
+}
+
+/// Measured values as dots, measured harmonics as a line, and the computed curve.
+pub(super) fn measured_chart(of: &MeasuredLine) -> Plot {
+    let (psi_deg, values) = of.curve.measured.points();
+    let mode = match &of.curve.measured {
+        MeasuredData::Samples { .. } => Mode::Markers,
+        MeasuredData::Harmonics(_) => Mode::Lines,
+    };
+    let azimuths = uniform_azimuths_rad(of.computed.len());
+    let computed_deg = azimuths.iter().map(|psi| psi.to_degrees()).collect();
+    let computed = ("computed", Mode::Lines, computed_deg, of.computed.clone());
+    curve_chart(of.curve.quantity.name(), vec![("measured", mode, psi_deg, values), computed])
+}
+
+/// Named values of two results as grouped bars.
+pub(super) fn pair_chart(title: &str, heads: &[String], sides: [(&str, Vec<f64>); 2]) -> Plot {
+    let mut plot = Plot::new();
+    for (i, (name, values)) in sides.into_iter().enumerate() {
+        let bars = Bar::new(heads.to_vec(), values).name(name);
+        plot.add_trace(bars.marker(Marker::new().color(SERIES[i])));
+    }
+    plot.set_layout(layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis(title)));
+    plot
+}
+
 /// The six loads as grouped bars: without control, and with each actuator for one set of harmonics.
 pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
     let names: Vec<String> = HubLoads::NAMES.iter().map(|n| n.to_uppercase()).collect();
@@ -101,7 +142,7 @@ pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
             Bar::new(names.clone(), scaled)
                 .name(name)
                 .hover_text_array(hover)
-                .marker(plotly::common::Marker::new().color(SERIES[i % SERIES.len()])),
+                .marker(Marker::new().color(SERIES[i % SERIES.len()])),
         );
     }
     plot.set_layout(

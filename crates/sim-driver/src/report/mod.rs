@@ -2,7 +2,9 @@
 
 mod assumptions;
 mod charts;
+mod compare;
 mod figure;
+mod measured;
 mod page;
 mod paper;
 mod state;
@@ -10,15 +12,16 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
+pub use compare::compare_html;
 pub use figure::Finding;
 pub(crate) use figure::actuator_title;
+pub use measured::measured_csv;
 pub use page::report_html;
 pub(crate) use paper::{is_paper, paper_numbers};
 pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
 pub use tables::{Section, histories_csv, robustness_csv, sensitivity_csv};
 
 use crate::identification::fit_table;
-use crate::output::table;
 use crate::results::{Figures, StoredResult};
 
 /// A stored result with its figures, as it is shown.
@@ -41,6 +44,11 @@ impl<'a> StudyReport<'a> {
         is_paper(&self.stored.case).then(|| paper::beside_paper(self.figures)).flatten()
     }
 
+    /// Measured against computed, where something was measured.
+    pub fn measured(&self) -> Vec<Section> {
+        measured::sections(self.figures)
+    }
+
     /// Sensitivities and robustness, where they were computed.
     pub fn further(&self) -> impl Iterator<Item = Section> + use<'a> {
         let Self { stored, figures } = *self;
@@ -57,10 +65,7 @@ impl<'a> StudyReport<'a> {
         let fits = fitted.map_or_else(String::new, |bench| {
             format!("\nActuator: {}\n{}", bench.data_title, fit_table(bench.fits.iter(), "V"))
         });
-        let sections = self.beside_paper().into_iter().chain(self.further()).map(|section| {
-            let header: Vec<&str> = section.header.iter().map(String::as_str).collect();
-            format!("\n{}. {}\n{}", section.title, section.text, table(&header, section.rows))
-        });
-        fits + &sections.collect::<String>()
+        let sections = self.beside_paper().into_iter().chain(self.measured()).chain(self.further());
+        fits + &sections.map(|section| section.to_string()).collect::<String>()
     }
 }

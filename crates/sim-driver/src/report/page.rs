@@ -1,8 +1,8 @@
 //! The page around the charts.
 
-use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart};
+use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart, measured_chart};
 use super::{Section, StudyReport, assumptions, state_lines};
-use crate::results::{BenchPart, by_set, set_name};
+use crate::results::{BenchPart, by_set, curve_name, set_name};
 use crate::stored_actuator::StoredFit;
 use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 use plotly::Plot;
@@ -37,6 +37,18 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
             h2 { "Trim and residuals" }
             @for (label, text) in state_lines(figures) { p { strong { (label) } " " (text) } }
             p { "All motions are in result.json." }
+        }
+        @for section in report.measured() { (section) }
+        @if let Some(part) = &stored.result.measured {
+            section {
+                h2 { "Measured and computed curves" }
+                div.grid {
+                    @for of in &part.curves {
+                        @let title = curve_name(of.curve.quantity, of.curve.station_r);
+                        (charts.figure("chart", &title, &of.curve.source, &measured_chart(of)))
+                    }
+                }
+            }
         }
         @if !figures.control.is_empty() {
             section {
@@ -83,6 +95,11 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
         (assumptions::assumptions(&stored.case))
         footer { p { (stored.program) ", result " code { (stored.key) } } }
     };
+    page(&stored.case.title, &body, &charts)
+}
+
+/// A whole page around its body.
+pub(super) fn page(title: &str, body: &Markup, charts: &Charts) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -90,7 +107,7 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                title { (stored.case.title) }
+                title { (title) }
                 style { (PreEscaped(STYLE)) }
                 (PreEscaped(plotly_script()))
             }
@@ -161,12 +178,12 @@ fn short(value: f64) -> String {
 
 /// The charts of a page: boxes in the text, their data in one script at its end.
 #[derive(Default)]
-struct Charts {
+pub(super) struct Charts {
     json: Vec<String>,
 }
 
 impl Charts {
-    fn figure(&mut self, class: &str, title: &str, note: &str, plot: &Plot) -> Markup {
+    pub(super) fn figure(&mut self, class: &str, title: &str, note: &str, plot: &Plot) -> Markup {
         let id = format!("chart-{}", self.json.len());
         // a title in the data must not end the script it stands in
         self.json.push(plot.to_json().replace("</", "<\\/"));

@@ -1,10 +1,10 @@
 //! The tables of a report, and the histories as CSV.
 
-use crate::output::csv_of;
+use crate::output::{Sheet, csv_of, table};
 use crate::results::{ControlRecord, flap_name, set_name};
 use rotor_base::uniform_azimuths_rad;
 use rotor_study::{RobustnessLine, SensitivityLine, most_moved};
-use std::fmt::Write as _;
+use std::fmt::{self, Write as _};
 
 /// Azimuths of the histories.
 pub(super) const HISTORY_AZIMUTHS: usize = 120;
@@ -20,6 +20,17 @@ pub struct Section {
     pub header: Vec<String>,
     /// Rows.
     pub rows: Vec<Vec<String>>,
+}
+
+/// For the terminal.
+impl fmt::Display for Section {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
+        let mut sheet = Sheet::default();
+        sheet.paragraphs(&format!("\n{}. {}", self.title, self.text));
+        sheet.block(&table(&header, self.rows.iter().cloned()));
+        f.write_str(&sheet.finish())
+    }
 }
 
 /// Sets of a single harmonic, which the sensitivities are about.

@@ -14,9 +14,9 @@ use hhc_control::{Cost, FeedbackLaw, TMatrix, lag_deg};
 use rotor_base::RotorScales;
 use rotor_response::HingeMoment;
 use rotor_study::{
-    Forecast, HingePower, MeanLoads, PowerOutputs, RobustnessLine, SensitivityLine, Setting,
-    StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine, WakeStatus, loads_cost,
-    output_weights, sensitivity_lines,
+    CurveComparison, Forecast, HingePower, MeanLoads, PowerOutputs, RobustnessLine,
+    SensitivityLine, Setting, StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine,
+    VortexComparison, WakeStatus, compare_curves, loads_cost, output_weights, sensitivity_lines,
 };
 use serde::Serialize;
 
@@ -42,6 +42,12 @@ pub struct Figures {
     /// Loads of one blade along its span without control.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub blade_loads: Vec<StationLine>,
+    /// Measured curves beside computed ones.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub measured: Vec<CurveComparison>,
+    /// Measured centres of tip vortices beside the computed vortices.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vortices: Option<VortexComparison>,
     /// Stability of the trimmed blade.
     pub stability: StabilityLine,
     /// One entry per set of harmonics and actuator.
@@ -170,6 +176,7 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
     // results of before hold the warnings of the control too
     let warnings =
         unique(result.warnings.iter().cloned().chain(control_warnings(&control, setting)));
+    let measured = result.measured.iter().flat_map(|part| &part.curves);
     Figures {
         trim: result.trim,
         residuals: result.residuals,
@@ -178,6 +185,8 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
         baseline: result.baseline,
         vibration_g: result.mean_loads.and_then(|mean| vibration_g(&result.baseline, mean.hub[2])),
         blade_loads: result.blade_loads.clone(),
+        measured: measured.map(|line| compare_curves(&line.curve, &line.computed)).collect(),
+        vortices: result.measured.as_ref().and_then(|part| part.vortices),
         stability: result.stability.clone(),
         control,
         forecasts: result.forecasts.iter().map(|line| line.figures(setting)).collect(),

@@ -4,16 +4,20 @@
 //! |---|---|
 //! | what a run found, each number once | here, controls in `control` |
 //! | figures: costs, reductions, lags, powers, computed where they are printed | `figures` |
+//! | computed curves, alone and beside measured ones | `measured` |
 //! | the file and its hash | `stored` |
 
 mod bench;
 mod control;
 mod figures;
+mod measured;
 mod stored;
 
 pub use bench::{BenchPart, LoopRecord, bench_loops};
 pub use control::{ControlEnd, ControlHead, ControlRecord, FlapRecord, SeriesLine, StepRecord};
 pub use figures::{ControlLine, Figures, FlapLine, figures};
+pub use measured::{CurveLine, MeasuredLine, MeasuredPart};
+pub(crate) use measured::{curve_name, same_station};
 pub use stored::{RESULT_FILE, StoredResult};
 
 use rotor_study::{
@@ -48,6 +52,13 @@ pub struct RunResult {
     /// none in results stored before they were.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<DiskLoads>,
+    /// Airloads at the stations that carry air and motion of the tip, flaps at rest; none in results stored before they
+    /// were.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub curves: Vec<CurveLine>,
+    /// What was measured beside what was computed; none without measured data.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measured: Option<MeasuredPart>,
     /// Stability of the trimmed blade, of each of the like ones where some are dissimilar.
     #[serde(default)]
     pub stability: StabilityLine,

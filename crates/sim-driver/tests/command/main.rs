@@ -4,9 +4,11 @@
 
 mod bad_input;
 mod commands;
+mod compare;
 mod disk;
 mod identify;
 mod import;
+mod measured;
 mod place;
 mod rotor;
 mod screen;

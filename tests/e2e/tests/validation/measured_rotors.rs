@@ -2,13 +2,14 @@
 
 use std::sync::LazyLock;
 
-use nalgebra::{DMatrix, DVector};
-use rotor_base::{Harmonic, HarmonicSeries, harmonic_waves, uniform_azimuths_rad, wrap_degrees};
-use rotor_response::{SectionAirload, StationAirloads, TipMotion};
-use rotor_study::{ModesQuestion, TrimmedRotor, rotating_modes};
-use rotor_wake::FreeWake;
-use sim_driver::case::{Case, FreeWakeValues, InflowChoice, shipped_case};
-use validation::{Check, Failure, Table, row, shared, too_few};
+use rotor_base::{Harmonic, HarmonicSeries, wrap_degrees};
+use rotor_study::{
+    CURVE_AZIMUTHS, CurveComparison, ModesQuestion, Quantity, TrimmedRotor, VortexComparison,
+    compare_curves, compare_vortices, computed_curves, rotating_modes,
+};
+use sim_driver::case::{Case, FreeWakeValues, InflowChoice, LoadedCase, load_case};
+use sim_driver::results::MeasuredPart;
+use validation::{Check, Failure, root, row, shared, too_few};
 
 const HART: &str = "measured: HART II, fixtures/measured/hart_ii";
 const HELINOVI: &str = "measured: HeliNOVI, fixtures/measured/helinovi";
@@ -23,10 +24,10 @@ pub(crate) const ROWS: &[Check] = &[
     .at_most(1.5, frequencies),
     row("V-MEAS-02", "HART II, baseline: C_n M^2 at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HART)
-        .at_least(0.80, || Ok(airload(&CN_M2, baseline()?, "BL", 1)?.correlation)),
+        .at_least(0.80, || Ok(baseline()?.curve(Quantity::NormalM2)?.from_1.correlation)),
     row("V-MEAS-03", "the same: rms distance", "-")
         .against(HART)
-        .at_most(0.010, || Ok(airload(&CN_M2, baseline()?, "BL", 1)?.rms)),
+        .at_most(0.010, || Ok(baseline()?.curve(Quantity::NormalM2)?.from_1.rms)),
     row("V-MEAS-04", "the same, near wake of 360 in place of 180 deg: correlation", "-")
         .against(HART)
         .near(0.654, 0.03, || descent(360.0, 36)),
@@ -49,14 +50,14 @@ pub(crate) const ROWS: &[Check] = &[
     .near(0.73, 0.03, || descent(180.0, 72)),
     row("V-MEAS-06", "the same: tip deflection, rms distance; shown, the bar is 0.35", "% R")
         .against(HART)
-        .near(0.41, 0.03, || tip(&baseline()?.tip, TIP_FLAP, |at| 100.0 * at.flap)),
+        .near(0.41, 0.03, || baseline()?.tip(Quantity::TipFlap)),
     row(
         "V-MEAS-07",
         "the same: elastic twist of the tip, rms distance; shown, the bar is 0.35",
         "deg",
     )
     .against(HART)
-    .near(0.50, 0.03, || tip(&baseline()?.tip, TIP_TWIST, |at| at.twist_rad.to_degrees())),
+    .near(0.50, 0.03, || baseline()?.tip(Quantity::TipTwist)),
     row(
         "V-MEAS-08",
         "the same: centres of tip vortices, vertical rms distance; shown, the bar is 3.0",
@@ -66,29 +67,29 @@ pub(crate) const ROWS: &[Check] = &[
     .near(3.3, 0.3, || vertical_distance(baseline()?)),
     row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
-        .at_least(0.85, || Ok(airload(&CN, level()?, "ID2", 1)?.correlation)),
+        .at_least(0.85, || Ok(level()?.curve(Quantity::Normal)?.from_1.correlation)),
     row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-")
         .against(HELINOVI)
-        .near(0.42, 0.05, || Ok(airload(&CN, level()?, "ID2", 2)?.correlation)),
+        .near(0.42, 0.05, || Ok(level()?.curve(Quantity::Normal)?.from_2.correlation)),
     row("V-MEAS-11", "HeliNOVI, climb: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
-        .at_least(0.85, || Ok(airload(&CN, climb()?, "ID1", 1)?.correlation)),
+        .at_least(0.85, || Ok(climb()?.curve(Quantity::Normal)?.from_1.correlation)),
     row("V-MEAS-12", "the same, 2 to 6/rev; shown", "-").against(HELINOVI).near(
         0.565,
         0.05,
-        || Ok(airload(&CN, climb()?, "ID1", 2)?.correlation),
+        || Ok(climb()?.curve(Quantity::Normal)?.from_2.correlation),
     ),
     row("V-MEAS-15", "level flight, 2 to 6/rev, near wake of 360 in place of 180 deg; shown", "-")
         .against(HELINOVI)
         .near(0.32, 0.05, || {
             let flown = flown("helinovi_level.ron", |case| in_wake(case, 360.0, 36))?;
-            Ok(airload(&CN, &flown, "ID2", 2)?.correlation)
+            Ok(flown.curve(Quantity::Normal)?.from_2.correlation)
         }),
     row("V-MEAS-16", "climb, 2 to 6/rev, near wake of 360 in place of 180 deg; shown", "-")
         .against(HELINOVI)
         .near(0.765, 0.05, || {
             let flown = flown("helinovi_climb.ron", |case| in_wake(case, 360.0, 36))?;
-            Ok(airload(&CN, &flown, "ID1", 2)?.correlation)
+            Ok(flown.curve(Quantity::Normal)?.from_2.correlation)
         }),
     row(
         "V-MEAS-17",
@@ -96,45 +97,58 @@ pub(crate) const ROWS: &[Check] = &[
         "%",
     )
     .against(HART)
-    .at_most(25.0, || Ok(airload_change(minimum_noise()?)?.amplitude_percent)),
+    .at_most(25.0, || Ok(change(minimum_noise()?, Quantity::NormalM2)?.amplitude_percent)),
     row("V-MEAS-18", "the same: phase off by", "deg")
         .against(HART)
-        .at_most(20.0, || Ok(airload_change(minimum_noise()?)?.phase_deg)),
+        .at_most(20.0, || Ok(change(minimum_noise()?, Quantity::NormalM2)?.phase_deg)),
     row("V-MEAS-19", "the same, phase of the root pitch read the other way: off by; shown", "deg")
         .against(HART)
-        .near(120.0, 30.0, || Ok(airload_change(&read_the_other_way()?)?.phase_deg)),
+        .near(120.0, 30.0, || Ok(change(&read_the_other_way()?, Quantity::NormalM2)?.phase_deg)),
     row("V-MEAS-20", "the same, elastic twist of the tip at 3/rev: amplitude off by", "%")
         .against(HART)
-        .at_most(25.0, || Ok(twist_change(minimum_noise()?)?.amplitude_percent)),
+        .at_most(25.0, || Ok(change(minimum_noise()?, Quantity::TipTwist)?.amplitude_percent)),
     row("V-MEAS-21", "the same: phase off by", "deg")
         .against(HART)
-        .at_most(20.0, || Ok(twist_change(minimum_noise()?)?.phase_deg)),
+        .at_most(20.0, || Ok(change(minimum_noise()?, Quantity::TipTwist)?.phase_deg)),
 ];
 
-/// Harmonics that are compared.
-const MOST: usize = 6;
-const STATION: f64 = 0.87;
-const AZIMUTHS: usize = 360;
-const TIP_FLAP: [&str; 2] = ["tip_flap.csv", "tip_deflection_percent_r"];
-const TIP_TWIST: [&str; 2] = ["tip_elastic_twist.csv", "elastic_twist_deg"];
-
-/// A rotor trimmed in its free wake.
+/// A rotor trimmed in its free wake, beside what was measured of it.
 struct Flown {
-    station: StationAirloads,
-    tip: Vec<TipMotion>,
-    radius_m: f64,
-    wake: FreeWake,
+    curves: Vec<CurveComparison>,
+    vortices: VortexComparison,
+}
+
+/// The shipped case with what its measured files hold.
+fn shipped(case: &str) -> Result<LoadedCase, Failure> {
+    Ok(load_case(&root().join("fixtures/cases").join(case))?)
 }
 
 fn flown(case: &str, change: impl Fn(&mut Case)) -> Result<Flown, Failure> {
-    let mut case = shipped_case(case)?.case;
+    let LoadedCase { mut case, measured, .. } = shipped(case)?;
     change(&mut case);
     let rotor = TrimmedRotor::new(&case, None)?;
-    let (stations, tip) = rotor.airloads(&[STATION], case.tip_mach(), AZIMUTHS)?;
-    let station = stations.into_iter().next().ok_or_else(|| too_few("stations", 0, 1))?;
-    let wake = rotor.wake().map(|trim| trim.wake.clone());
-    let wake = wake.ok_or_else(|| too_few("wakes", 0, 1))?;
-    Ok(Flown { station, tip, radius_m: case.rotor.radius_m, wake })
+    let stations: Vec<f64> = case.measured.airloads.iter().map(|of| of.station_r).collect();
+    let (airloads, tip) = rotor.airloads(&stations, case.tip_mach(), CURVE_AZIMUTHS)?;
+    let part = MeasuredPart::of(&measured, &computed_curves(&airloads, &tip), None);
+    let curves = part.map(|part| part.curves).unwrap_or_default();
+    let wake = &rotor.wake().ok_or_else(|| too_few("wakes", 0, 1))?.wake;
+    Ok(Flown {
+        curves: curves.iter().map(|line| compare_curves(&line.curve, &line.computed)).collect(),
+        vortices: compare_vortices(&measured.vortex_centres, wake),
+    })
+}
+
+impl Flown {
+    /// A measured quantity beside the computed one.
+    fn curve(&self, quantity: Quantity) -> Result<&CurveComparison, Failure> {
+        let found = self.curves.iter().find(|curve| curve.quantity == quantity);
+        found.ok_or_else(|| too_few(quantity.name(), 0, 1))
+    }
+
+    /// Rms distance of a motion of the tip.
+    fn tip(&self, quantity: Quantity) -> Result<f64, Failure> {
+        self.curve(quantity)?.distance.ok_or_else(|| too_few(quantity.name(), 0, 1))
+    }
 }
 
 /// Gives a case a free wake of another near wake and number of steps, and as many time points as these need.
@@ -153,7 +167,7 @@ fn in_wake(case: &mut Case, near_wake_deg: f64, steps: usize) {
 /// Correlation of `C_n M^2` in descent with another wake.
 fn descent(near_wake_deg: f64, steps: usize) -> Result<f64, Failure> {
     let flown = flown("hart_ii_bl.ron", |case| in_wake(case, near_wake_deg, steps))?;
-    Ok(airload(&CN_M2, &flown, "BL", 1)?.correlation)
+    Ok(flown.curve(Quantity::NormalM2)?.from_1.correlation)
 }
 
 static BASELINE: LazyLock<Result<Flown, Failure>> =
@@ -201,7 +215,7 @@ const FREQUENCIES: [(&str, usize, f64); 6] = [
 ];
 
 fn frequencies() -> Result<f64, Failure> {
-    let case = shipped_case("hart_ii_bl.ron")?.case;
+    let case = shipped("hart_ii_bl.ron")?.case;
     let found = rotating_modes(&case, &ModesQuestion::default())?.modes;
     let mut worst = 0.0_f64;
     for (kind, number, wanted) in FREQUENCIES {
@@ -211,90 +225,6 @@ fn frequencies() -> Result<f64, Failure> {
         worst = worst.max(100.0 * (per_rev / wanted - 1.0).abs());
     }
     Ok(worst)
-}
-
-/// How two curves agree, their means removed.
-struct Agreement {
-    correlation: f64,
-    rms: f64,
-}
-
-/// Of the harmonics from `first` to [`MOST`], by azimuth.
-fn agreement(own: &HarmonicSeries, measured: &HarmonicSeries, first: usize) -> Agreement {
-    let part = |series: &HarmonicSeries, psi: f64| -> f64 {
-        (first..=MOST)
-            .map(|n| {
-                let Harmonic { cosine, sine } = series.harmonic(n);
-                let angle = n as f64 * psi;
-                cosine * angle.cos() + sine * angle.sin()
-            })
-            .sum()
-    };
-    let [mut xx, mut yy, mut xy, mut square] = [0.0; 4];
-    for psi in uniform_azimuths_rad(AZIMUTHS) {
-        let (x, y) = (part(own, psi), part(measured, psi));
-        xx += x * x;
-        yy += y * y;
-        xy += x * y;
-        square += (x - y) * (x - y);
-    }
-    Agreement { correlation: xy / (xx * yy).sqrt(), rms: (square / AZIMUTHS as f64).sqrt() }
-}
-
-fn measured(file: &str, case: &str, columns: [&str; 2]) -> Result<HarmonicSeries, Failure> {
-    let table = Table::read(file)?;
-    let mut series = HarmonicSeries::zero(MOST);
-    for n in 1..=MOST {
-        let row = table.row(["case", "per_rev"], [case, &n.to_string()])?;
-        let [cosine, sine] = [row.number(columns[0])?, row.number(columns[1])?];
-        series.set_harmonic(n, Harmonic { cosine, sine });
-    }
-    Ok(series)
-}
-
-/// A measured airload at 0.87 R, and the computed one beside it.
-struct Airload {
-    file: &'static str,
-    columns: [&'static str; 2],
-    value: fn(&SectionAirload) -> f64,
-}
-
-const CN_M2: Airload = Airload {
-    file: "../measured/hart_ii/airloads_087r_harmonics.csv",
-    columns: ["cn_m2_cos", "cn_m2_sin"],
-    value: |at| at.normal_m2,
-};
-const CN: Airload = Airload {
-    file: "../measured/helinovi/cn_087r_harmonics.csv",
-    columns: ["cn_cos", "cn_sin"],
-    value: |at| at.normal,
-};
-
-/// Agreement of an airload with a measured case from a harmonic on.
-fn airload(of: &Airload, flown: &Flown, case: &str, first: usize) -> Result<Agreement, Failure> {
-    let values: Vec<f64> = flown.station.loads.iter().map(of.value).collect();
-    let own = HarmonicSeries::from_uniform_samples(&values, MOST)?;
-    Ok(agreement(&own, &measured(of.file, case, of.columns)?, first))
-}
-
-/// RMS distance of a motion of the tip from that measured in BL.
-fn tip(
-    own: &[TipMotion],
-    [file, column]: [&str; 2],
-    value: fn(&TipMotion) -> f64,
-) -> Result<f64, Failure> {
-    let values: Vec<f64> = own.iter().map(value).collect();
-    let own = HarmonicSeries::from_uniform_samples(&values, 20)?;
-    let table = Table::read(&format!("../measured/hart_ii/{file}"))?;
-    let (mut square, mut count) = (0.0, 0);
-    for row in table.rows() {
-        if row.text("case")? == "BL" {
-            let psi = row.number("azimuth_deg")?.to_radians();
-            square += (own.value(psi) - row.number(column)?).powi(2);
-            count += 1;
-        }
-    }
-    if count == 0 { Err(too_few(column, count, 1)) } else { Ok((square / count as f64).sqrt()) }
 }
 
 /// Harmonic of the root pitch of the minimum-noise case.
@@ -322,75 +252,20 @@ fn apart(own: [Harmonic; 2], measured: [Harmonic; 2]) -> Apart {
     }
 }
 
-/// Of the change of `C_n M^2` from baseline to minimum noise.
-fn airload_change(pitched: &Flown) -> Result<Apart, Failure> {
-    let own = |flown: &Flown| -> Result<Harmonic, Failure> {
-        let values: Vec<f64> = flown.station.loads.iter().map(CN_M2.value).collect();
-        Ok(HarmonicSeries::from_uniform_samples(&values, MOST)?.harmonic(PITCHED))
+/// Of the change of a quantity from baseline to minimum noise.
+fn change(pitched: &Flown, quantity: Quantity) -> Result<Apart, Failure> {
+    let (to, from) = (pitched.curve(quantity)?, baseline()?.curve(quantity)?);
+    let both = |of: fn(&CurveComparison) -> &HarmonicSeries| {
+        [of(to).harmonic(PITCHED), of(from).harmonic(PITCHED)]
     };
-    let of = |case| Ok::<_, Failure>(measured(CN_M2.file, case, CN_M2.columns)?.harmonic(PITCHED));
-    Ok(apart([own(pitched)?, own(baseline()?)?], [of("MN")?, of("BL")?]))
+    Ok(apart(both(|of| &of.computed), both(|of| &of.measured)))
 }
 
-/// Of the change of the elastic twist of the tip from baseline to minimum noise.
-fn twist_change(pitched: &Flown) -> Result<Apart, Failure> {
-    let own = |flown: &Flown| -> Result<Harmonic, Failure> {
-        let values: Vec<f64> = flown.tip.iter().map(|at| at.twist_rad.to_degrees()).collect();
-        Ok(HarmonicSeries::from_uniform_samples(&values, MOST)?.harmonic(PITCHED))
-    };
-    let of = |case| measured_tip(TIP_TWIST, case);
-    Ok(apart([own(pitched)?, own(baseline()?)?], [of("MN")?, of("BL")?]))
-}
-
-/// Harmonic [`PITCHED`] of a measured motion of the tip, by least squares over mean and 1 to 6/rev.
-fn measured_tip([file, column]: [&str; 2], case: &str) -> Result<Harmonic, Failure> {
-    let table = Table::read(&format!("../measured/hart_ii/{file}"))?;
-    let (mut waves, mut values) = (Vec::new(), Vec::new());
-    for row in table.rows() {
-        if row.text("case")? == case {
-            waves.extend(harmonic_waves(row.number("azimuth_deg")?.to_radians(), MOST));
-            values.push(row.number(column)?);
-        }
-    }
-    let waves = DMatrix::from_row_iterator(values.len(), 1 + 2 * MOST, waves);
-    let found = waves.svd(true, true).solve(&DVector::from_vec(values.clone()), 1e-9);
-    let found = found.map_err(|_| too_few(column, values.len(), 1 + 2 * MOST))?;
-    Ok(Harmonic { cosine: found[2 * PITCHED - 1], sine: found[2 * PITCHED] })
-}
-
-/// A measured vortex farther along the flight path than this from any computed one, R, is that of another turn.
-const SAME_VORTEX: f64 = 0.12;
-
-/// Vertical rms distance of measured vortex centres from where the tip vortices of the wake cross the same vertical plane
-/// along the flight, percent of R.
+/// Vertical rms distance of vortex centres, percent of R, over at least 40 of them.
 fn vertical_distance(flown: &Flown) -> Result<f64, Failure> {
-    let settings = flown.wake.settings();
-    let step = settings.step_rad().to_degrees();
-    let table = Table::read("../measured/hart_ii/vortex_centres.csv")?;
-    let (mut square, mut count) = (0.0, 0);
-    for row in table.rows() {
-        if row.text("case")? != "BL" {
-            continue;
-        }
-        let [x, y, z] = [row.number("x_m")?, row.number("y_m")?, row.number("z_m")?]
-            .map(|c| c / flown.radius_m);
-        let azimuth = row.number("azimuth_deg")?;
-        let mut nearest: Option<[f64; 2]> = None;
-        // those of all blades with the first at that azimuth
-        let seen = (0..settings.azimuths).find(|i| (*i as f64 * step - azimuth).abs() < 0.5 * step);
-        for crossing in seen.iter().flat_map(|i| flown.wake.tip_vortex_crossings(*i, y)) {
-            let [along, _, up] = crossing.point;
-            if nearest.is_none_or(|[best, _]| (along - x).abs() < (best - x).abs()) {
-                nearest = Some([along, up]);
-            }
-        }
-        if let Some([_, up]) = nearest.filter(|[along, _]| (along - x).abs() <= SAME_VORTEX) {
-            square += (up - z).powi(2);
-            count += 1;
-        }
+    let VortexComparison { vertical_percent_r, compared, .. } = flown.vortices;
+    if compared < 40 {
+        return Err(too_few("vortex centres", compared, 40));
     }
-    if count < 40 {
-        return Err(too_few("vortex centres", count, 40));
-    }
-    Ok(100.0 * (square / count as f64).sqrt())
+    Ok(vertical_percent_r)
 }
