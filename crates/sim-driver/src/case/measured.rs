@@ -28,6 +28,9 @@ const PER_REV: &str = "per_rev";
 const OTHER_NAME: (&str, Quantity) = ("tip_deflection_percent_r", Quantity::TipFlap);
 /// Columns of vortex centres.
 const CENTRE: [&str; 3] = ["x_m", "y_m", "z_m"];
+/// Their names in the tables of the HART II workshop, and columns there that say where a centre was looked for.
+const WORKSHOP_CENTRE: [&str; 3] = ["x_hub_m", "y_hub_m", "z_hub_m"];
+const WORKSHOP_PLACE: [&str; 3] = ["data_point", "piv_location", "plane_y_r"];
 /// Fewest harmonics that samples must resolve: with fewer, half of the revolution is not seen.
 const LEAST_HARMONICS: usize = 2;
 
@@ -152,10 +155,12 @@ impl MeasuredRotor {
         radius_m: f64,
         at: (&Folder, &RonIndex),
     ) -> Result<(), Problems> {
-        let [x, y, z] = CENTRE;
-        let Some(table) = self.table(named, &[AZIMUTH, x, y, z], at)? else { return Ok(()) };
+        let known = [&[AZIMUTH], &CENTRE[..], &WORKSHOP_CENTRE, &WORKSHOP_PLACE].concat();
+        let Some(table) = self.table(named, &known, at)? else { return Ok(()) };
         let remedy = "centres need azimuth_deg, x_m, y_m and z_m, hub axes: aft, starboard, up";
         let azimuths = table.column(AZIMUTH, remedy)?;
+        let is_workshop = table.get(WORKSHOP_CENTRE[0]).is_some();
+        let [x, y, z] = if is_workshop { WORKSHOP_CENTRE } else { CENTRE };
         let [x, y, z] =
             [table.column(x, remedy)?, table.column(y, remedy)?, table.column(z, remedy)?];
         let centres = (0..azimuths.len()).map(|i| VortexCentre {

@@ -161,6 +161,14 @@ fn vortices_without_a_wake_are_said_to_be_compared_with_nothing() {
     let place = Place::new();
     place.write("case.ron", &with_measured("(vortex_centres: [(file: \"v.csv\")])"));
     place.write("v.csv", "azimuth_deg,x_m,y_m,z_m\n10,1,1,0\n20,1,2,0\n30,1,2,0\n");
+    place.write(
+        "w.csv",
+        "data_point,azimuth_deg,x_hub_m,y_hub_m,z_hub_m\n7,10,1,1,0\n8,20,1,2,0\n8,30,1,2,0\n",
+    );
+    place.write("w.ron", &with_measured("(vortex_centres: [(file: \"w.csv\")])"));
+    place.hhc(&["check", "w.ron"]).done();
+    place.write("w.csv", "azimuth_deg,x_hub_m,y_hub_m\n10,1,1\n20,1,2\n30,1,2\n");
+    place.hhc(&["check", "w.ron"]).rejected(&["w.csv:1:1", "`z_hub_m` is missing"]);
     let ran = place.hhc(&["run", "case.ron", "--out", "out"]);
     assert!(ran.err.contains("measured.vortex_centres"), "{}", ran.err);
     ran.done();
