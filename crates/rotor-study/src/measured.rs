@@ -6,8 +6,11 @@
 //! ```
 
 use nalgebra::{DMatrix, DVector};
-use rotor_base::{Harmonic, HarmonicSeries, harmonic_waves, mean_square, uniform_azimuths_rad};
+use rotor_base::{
+    Harmonic, HarmonicSeries, harmonic_waves, mean_square, uniform_azimuths_rad, wrap_degrees,
+};
 use rotor_response::{SectionAirload, StationAirloads, TipMotion};
+use rotor_wake::FreeWake;
 use serde::{Deserialize, Serialize};
 use std::ops::RangeInclusive;
 

@@ -1,4 +1,5 @@
 //! The free wake: kernel and properties.
 
+mod body;
 mod kernel;
 mod properties;

@@ -7,7 +7,7 @@ use rotor_study::{
     CURVE_AZIMUTHS, CurveComparison, ModesQuestion, Quantity, TrimmedRotor, VortexComparison,
     compare_curves, compare_vortices, computed_curves, rotating_modes,
 };
-use sim_driver::case::{Case, FreeWakeValues, InflowChoice, LoadedCase, load_case};
+use sim_driver::case::{BodyValues, Case, FreeWakeValues, InflowChoice, LoadedCase, load_case};
 use sim_driver::results::MeasuredPart;
 use validation::{Check, Failure, root, row, shared, too_few};
 
@@ -151,14 +151,23 @@ impl Flown {
     }
 }
 
+/// Changes the free wake of a case.
+fn change_wake(case: &mut Case, change: impl Fn(&mut FreeWakeValues)) {
+    if let InflowChoice::FreeWake(wake) = &mut case.inflow.model {
+        change(wake);
+    }
+}
+
+/// A flight without a body below the hub.
+fn without_body(case: &str) -> Result<Flown, Failure> {
+    flown(case, |case| change_wake(case, |wake| wake.body = BodyValues::default()))
+}
+
 /// Gives a case a free wake of another near wake and number of steps, and as many time points as these need.
 fn in_wake(case: &mut Case, near_wake_deg: f64, steps: usize) {
-    let wake = FreeWakeValues {
-        near_wake_deg: Some(near_wake_deg),
-        azimuths: Some(steps),
-        ..FreeWakeValues::default()
-    };
-    case.inflow.model = InflowChoice::FreeWake(wake);
+    change_wake(case, |wake| {
+        (wake.near_wake_deg, wake.azimuths) = (Some(near_wake_deg), Some(steps));
+    });
     if steps > 48 {
         case.response.time_gauss_points = 12;
     }

@@ -1,0 +1,99 @@
+//! A wake without circulation in the flow round a body: it goes where the air goes.
+
+use rotor_wake::{
+    BladeLines, Body, CirculationMap, FlightState, FreeWake, FreeWakeSettings, Vec3, WakeMethod,
+    WakeRotor,
+};
+
+const BODY: Body =
+    Body { half_length: 0.45, radius: 0.18, middle: [0.0, 0.0, -0.25], nose_up_rad: 0.0 };
+const FLIGHT: FlightState = FlightState { advance_ratio: 0.2, shaft_tilt_rad: -0.08 };
+const PANELS: usize = 8;
+
+fn settled(azimuths: usize, method: WakeMethod) -> FreeWake {
+    let rotor = WakeRotor::uniform(4, 0.2, PANELS).unwrap();
+    let settings = FreeWakeSettings {
+        azimuths,
+        turns: 1,
+        near_wake_rad: 0.5,
+        body: Some(BODY),
+        ..FreeWakeSettings::default()
+    };
+    let lines = BladeLines::flat(&rotor, azimuths);
+    let mut wake = FreeWake::undistorted(rotor, settings, FLIGHT, 0.0, lines).unwrap();
+    let none = CirculationMap::constant(azimuths, PANELS, 0.0).unwrap();
+    wake.carry_on(method, 12, &none).unwrap();
+    wake
+}
+
+fn stream() -> Vec3 {
+    [FLIGHT.advance_ratio, 0.0, -FLIGHT.normal_inflow()]
+}
+
+fn moved(at: Vec3, by: Vec3, part: f64) -> Vec3 {
+    std::array::from_fn(|k| at[k] + part * by[k])
+}
+
+/// Where the air from a point has come to after an angle, by Runge and Kutta's method.
+fn carried(mut at: Vec3, angle: f64) -> Vec3 {
+    let wind = |at: Vec3| moved(stream(), BODY.velocity(at, stream()), 1.0);
+    let steps = 400;
+    let step = angle / f64::from(steps);
+    for _ in 0..steps {
+        let a = wind(at);
+        let b = wind(moved(at, a, 0.5 * step));
+        let c = wind(moved(at, b, 0.5 * step));
+        let d = wind(moved(at, c, step));
+        for (slope, part) in [(a, 1.0), (b, 2.0), (c, 2.0), (d, 1.0)] {
+            at = moved(at, slope, part * step / 6.0);
+        }
+    }
+    at
+}
+
+/// Largest distance of the tip vortex from the air it was released into, and how far the body has moved that air.
+fn distances(wake: &FreeWake) -> [f64; 2] {
+    let tip = wake.vortices().pop().unwrap().points;
+    let (azimuths, step) = (tip.len(), wake.settings().step_rad());
+    let norm = |v: Vec3| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let (mut off, mut by_the_body) = (0.0_f64, 0.0_f64);
+    for i in (0..azimuths).step_by(azimuths / 12) {
+        let k = azimuths;
+        let release = tip[(i + azimuths - k % azimuths) % azimuths][0];
+        let angle = k as f64 * step;
+        let air = carried(release, angle);
+        off = off.max(norm(moved(tip[i][k], air, -1.0)));
+        by_the_body = by_the_body.max(norm(moved(air, moved(release, stream(), angle), -1.0)));
+    }
+    [off, by_the_body]
+}
+
+#[test]
+fn a_wake_without_circulation_goes_with_the_air_round_the_body() {
+    let [coarse, _] = distances(&settled(36, WakeMethod::Relaxed));
+    let [fine, moved] = distances(&settled(72, WakeMethod::Relaxed));
+    println!("off the air {coarse:.1e}, {fine:.1e}; moved by the body {moved:.3}");
+    assert!(moved > 0.02 && fine < 0.01 * moved, "{fine:e} of {moved}");
+    let order = (coarse / fine).log2();
+    assert!(order > 1.7, "{order}");
+    let [marched, _] = distances(&settled(72, WakeMethod::Marched));
+    println!("marched: {marched:.1e}");
+    assert!(marched < 0.02 * moved, "{marched:e}");
+}
+
+#[test]
+fn blades_feel_the_flow_round_the_body() {
+    let wake = settled(36, WakeMethod::Relaxed);
+    let none = CirculationMap::constant(36, PANELS, 0.0).unwrap();
+    let inflow = wake.line_induction(&none).unwrap().inflow(&none).unwrap();
+    for (i, azimuth) in (0..36).map(|i| f64::from(i) * std::f64::consts::TAU / 36.0).enumerate() {
+        let (sin, cos) = azimuth.sin_cos();
+        for (s, r) in inflow.stations().iter().enumerate() {
+            let [x, y, z] = BODY.velocity([r * cos, r * sin, 0.0], stream());
+            let place = i * PANELS + s;
+            assert!((inflow.row(i)[s] + z).abs() < 1e-12);
+            let along = inflow.in_plane_values().unwrap()[place];
+            assert!((along - (x * sin - y * cos)).abs() < 1e-12);
+        }
+    }
+}
