@@ -13,11 +13,23 @@
 //! | `cn_m2` | cells | `C_n M^2` of the section in the middle of the panel, normal to the chord, up positive; blades and disk |
 //! | `thrust_N_per_m` | cells | lift per length along the shaft, up positive, mean over the panel; blades and disk |
 
-use super::wake::at_nodes;
 use rotor_base::RotorScales;
 use rotor_study::DiskLoads;
-use rotor_wake::{FilamentStates, FreeWake, Vec3};
+use rotor_wake::{FilamentStates, FreeWake, SegmentState, Vec3, WakeFilament};
 use std::fmt::Write as _;
+
+/// What a filament carries at its nodes: that of the segment behind a node, of the last one at its end; nothing where the
+/// near wake stands for it.
+pub(super) fn at_nodes(
+    filament: &WakeFilament,
+    states: &[Vec<SegmentState>],
+    azimuth: usize,
+) -> Vec<SegmentState> {
+    let states = &states[azimuth];
+    let last = states.len().saturating_sub(1);
+    let at = |k: usize| states.get(k.min(last)).copied().filter(|_| k >= filament.first_age);
+    (0..filament.points[azimuth].len()).map(|k| at(k).unwrap_or_default()).collect()
+}
 
 /// What the files show.
 pub(super) struct Revolution<'a> {

@@ -3,11 +3,11 @@
 use crate::SimError;
 use crate::case::{Case, LoadedCase};
 use crate::output::{Printable, Sheet, csv_of, table_of};
-use crate::print::revolution::{Revolution, revolution_files};
+use crate::print::revolution::{Revolution, at_nodes, revolution_files};
 use rotor_study::{FoundWake, HubLoads, StudyError, WakeResult, wake_of_case};
 use rotor_wake::{
     CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, VortexCrossing,
-    WakeError, WakeFilament,
+    WakeError,
 };
 use std::fmt::Write as _;
 
@@ -93,19 +93,6 @@ fn files_of(found: &FoundWake, case: &Case) -> Result<WakeFiles, WakeError> {
         files.extend(revolution_files(&Revolution { wake, states: &states, disk, scales }));
     }
     Ok(files)
-}
-
-/// What a filament carries at its nodes: that of the segment behind a node, of the last one at its end; nothing where the
-/// near wake stands for it.
-pub(super) fn at_nodes(
-    filament: &WakeFilament,
-    states: &[Vec<SegmentState>],
-    azimuth: usize,
-) -> Vec<SegmentState> {
-    let states = &states[azimuth];
-    let last = states.len().saturating_sub(1);
-    let at = |k: usize| states.get(k.min(last)).copied().filter(|_| k >= filament.first_age);
-    (0..filament.points[azimuth].len()).map(|k| at(k).unwrap_or_default()).collect()
 }
 
 /// One row per node: the rolled-up vortices, from the age on at which they carry vorticity, and the trailers of the near
