@@ -397,6 +397,10 @@ pub const AREAS: &[Area] = &[
             "V-MEAS-19",
             "V-MEAS-20",
             "V-MEAS-21",
+            "V-MEAS-22",
+            "V-MEAS-23",
+            "V-MEAS-24",
+            "V-MEAS-25",
         ],
     },
 ];
