@@ -255,7 +255,7 @@ pub fn band_peaks(
                 }
             }
         }
-        (size >= 0.0).then(|| BandPeak { peak_to_peak: most - least, azimuth_deg: at })
+        (size >= 0.0).then_some(BandPeak { peak_to_peak: most - least, azimuth_deg: at })
     })
 }
 

@@ -82,10 +82,10 @@ pub(super) fn azimuth_chart(record: &ControlRecord) -> Plot {
 }
 
 /// A curve to draw: its name, dots or line, azimuths in deg, values.
-pub(super) type DrawnCurve<'a> = (&'a str, Mode, Vec<f64>, Vec<f64>);
+pub(crate) type DrawnCurve<'a> = (&'a str, Mode, Vec<f64>, Vec<f64>);
 
 /// Curves against azimuth.
-pub(super) fn curve_chart(title: &str, curves: Vec<DrawnCurve<'_>>) -> Plot {
+pub(crate) fn curve_chart(title: &str, curves: Vec<DrawnCurve<'_>>) -> Plot {
     let mut plot = Plot::new();
     for (i, (name, mode, psi_deg, values)) in curves.into_iter().enumerate() {
         let colour = SERIES[i % SERIES.len()];
@@ -112,7 +112,7 @@ pub(super) fn measured_chart(of: &MeasuredLine) -> Plot {
 }
 
 /// Named values of two results as grouped bars.
-pub(super) fn pair_chart(title: &str, heads: &[String], sides: [(&str, Vec<f64>); 2]) -> Plot {
+pub(crate) fn pair_chart(title: &str, heads: &[String], sides: [(&str, Vec<f64>); 2]) -> Plot {
     let mut plot = Plot::new();
     for (i, (name, values)) in sides.into_iter().enumerate() {
         let bars = Bar::new(heads.to_vec(), values).name(name);

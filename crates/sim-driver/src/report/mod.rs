@@ -2,7 +2,6 @@
 
 mod assumptions;
 mod charts;
-mod compare;
 mod figure;
 mod measured;
 mod page;
@@ -12,11 +11,12 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-pub use compare::compare_html;
+pub(crate) use charts::{curve_chart, pair_chart};
 pub use figure::Finding;
 pub(crate) use figure::actuator_title;
 pub use measured::measured_csv;
 pub use page::report_html;
+pub(crate) use page::{Charts, page};
 pub(crate) use paper::{is_paper, paper_numbers};
 pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
 pub use tables::{Section, histories_csv, robustness_csv, sensitivity_csv};

@@ -99,7 +99,7 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
 }
 
 /// A whole page around its body.
-pub(super) fn page(title: &str, body: &Markup, charts: &Charts) -> String {
+pub(crate) fn page(title: &str, body: &Markup, charts: &Charts) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -178,12 +178,12 @@ fn short(value: f64) -> String {
 
 /// The charts of a page: boxes in the text, their data in one script at its end.
 #[derive(Default)]
-pub(super) struct Charts {
+pub(crate) struct Charts {
     json: Vec<String>,
 }
 
 impl Charts {
-    pub(super) fn figure(&mut self, class: &str, title: &str, note: &str, plot: &Plot) -> Markup {
+    pub(crate) fn figure(&mut self, class: &str, title: &str, note: &str, plot: &Plot) -> Markup {
         let id = format!("chart-{}", self.json.len());
         // a title in the data must not end the script it stands in
         self.json.push(plot.to_json().replace("</", "<\\/"));

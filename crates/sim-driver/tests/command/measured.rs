@@ -1,6 +1,7 @@
 //! Measured data of a user's own case: what is printed and written, and what is refused.
 
 use crate::place::{Place, QUICK_CASE};
+use std::fmt::Write;
 
 /// A case with measured data in a folder beside it.
 fn with_measured(measured: &str) -> String {
@@ -42,14 +43,14 @@ fn a_case_of_the_user_is_compared_with_the_users_files() {
     let mut table = "# own measurement\nazimuth_deg,cn_m2\n".to_owned();
     for (psi, value) in &airload {
         let pulse = 0.02 * (-((psi - 55.0) / 1.5).powi(2)).exp();
-        table += &format!("{psi},{}\n", value + 0.01 + pulse);
+        let _ = writeln!(table, "{psi},{}", value + 0.01 + pulse);
     }
     place.write("data/section.csv", &table);
     let mut table = "case,azimuth_deg,tip_deflection_percent_r\n".to_owned();
     for (psi, value) in
         curve(&place.read("before/tip.csv"), None, "flap_percent_r").iter().step_by(15)
     {
-        table += &format!("first,{psi},{value}\nsecond,{psi},{}\n", value + 1.0);
+        let _ = writeln!(table, "first,{psi},{value}\nsecond,{psi},{}", value + 1.0);
     }
     place.write("data/tip.csv", &table);
     place.write(
@@ -89,8 +90,11 @@ fn a_case_of_the_user_is_compared_with_the_users_files() {
 
 #[test]
 fn a_fault_of_a_measured_file_has_its_place_and_remedy() {
-    let tip: String = (0..24).map(|i| format!("{},{}\n", 15 * i, i)).collect();
-    let in_rad: String = (0..24).map(|i| format!("{},{}\n", 0.26 * f64::from(i), i)).collect();
+    let rows = |step: f64| {
+        let rows = (0..24).map(|i| format!("{},{i}", step * f64::from(i)));
+        rows.collect::<Vec<_>>().join("\n") + "\n"
+    };
+    let (tip, in_rad) = (rows(15.0), rows(0.26));
     let good = format!("azimuth_deg,flap_percent_r\n{tip}");
     let harmonics = "per_rev,cn_cos,cn_sin\n0,1,0\n1,1,1\n3,1,1\n";
     let one = |file: &str| format!("(tip: [(file: \"{file}\")])");

@@ -2,6 +2,10 @@
 //!
 //! A difference is that of B less A; of a harmonic also as a vector, whose amplitude counts a change of phase.
 
+mod page;
+
+pub use page::compare_html;
+
 use crate::SimError;
 use crate::case::Case;
 use crate::output::{Printable, Sheet};
@@ -15,6 +19,7 @@ use rotor_study::{HubLoads, MeanLoads, WakeStatus, loads_cost};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 /// A field that differs in the two cases.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -364,9 +369,11 @@ const HARMONIC_HEADS: [&str; 10] =
 impl Comparison {
     /// What differs in the cases, values no longer than so many characters.
     pub(crate) fn fields_section(&self, most: usize) -> Section {
-        let value = |text: &str| match text.chars().count() > most {
-            true => text.chars().take(most.saturating_sub(3)).collect::<String>() + "...",
-            false => text.to_owned(),
+        let value = |text: &str| {
+            if text.chars().count() <= most {
+                return text.to_owned();
+            }
+            text.chars().take(most.saturating_sub(3)).collect::<String>() + "..."
         };
         let rows = self.fields.iter().map(|c| vec![c.field.clone(), value(&c.a), value(&c.b)]);
         let text = if self.fields.is_empty() { "Nothing." } else { "" };
@@ -411,7 +418,9 @@ impl Comparison {
         );
         let quoted = |name: &str| format!("\"{name}\"");
         let mut plain = |name: &str, unit: &str, per_rev: &str, [a, b]: [f64; 2]| {
-            text += &format!("{},{unit},{per_rev},{a:e},,{b:e},,{:e},,\n", quoted(name), b - a);
+            // writing to a string cannot fail
+            let (name, apart) = (quoted(name), b - a);
+            let _ = writeln!(text, "{name},{unit},{per_rev},{a:e},,{b:e},,{apart:e},,");
         };
         for of in &self.numbers {
             plain(&of.name, of.unit, "", [of.a, of.b]);
@@ -432,7 +441,7 @@ impl Comparison {
                 vector.phase_deg(),
             ];
             let cells = cells.map(|cell| format!("{cell:e}")).join(",");
-            text += &format!("{},{},{},{cells}\n", quoted(&of.name), of.unit, of.per_rev);
+            let _ = writeln!(text, "{},{},{},{cells}", quoted(&of.name), of.unit, of.per_rev);
         }
         text
     }

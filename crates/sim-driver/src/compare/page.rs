@@ -1,8 +1,7 @@
 //! The page of two results side by side.
 
-use super::charts::{curve_chart, pair_chart};
-use super::page::{Charts, page};
-use crate::compare::Comparison;
+use super::Comparison;
+use crate::report::{Charts, curve_chart, page, pair_chart};
 use maud::html;
 use plotly::common::Mode;
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
