@@ -235,6 +235,7 @@ fn is_one(factor: &f64) -> bool {
 /// Inflow models.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[expect(clippy::large_enum_variant, reason = "a case has one")]
 pub enum InflowChoice {
     /// Glauert's momentum theory, uniform.
     Uniform,

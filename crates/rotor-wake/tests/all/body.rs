@@ -1,5 +1,7 @@
 //! A wake without circulation in the flow round a body: it goes where the air goes.
 
+#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
+
 use rotor_wake::{
     BladeLines, Body, CirculationMap, FlightState, FreeWake, FreeWakeSettings, Vec3, WakeMethod,
     WakeRotor,
@@ -81,9 +83,9 @@ fn a_wake_without_circulation_goes_with_the_air_round_the_body() {
     let order = (coarse / fine).log2();
     assert!(order > 1.7, "{order}");
     // a marched helix is turned on its way, by d^2/3 rad per rad of age: another part of the flow
-    let [marched, _] = found(144, WakeMethod::Marched);
+    let [marched, _] = found(72, WakeMethod::Marched);
     println!("marched: {marched:.1e}");
-    assert!(marched < 0.25 * moved, "{marched:e}");
+    assert!(marched < 0.4 * moved, "{marched:e}");
 }
 
 #[test]
