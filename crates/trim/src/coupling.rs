@@ -16,6 +16,8 @@ const MOST_HALVINGS: u32 = 3;
 const LEAST_GAIN: f64 = 0.9;
 /// Share of a change of circulation that moves the wake: near passages of vortices answer strongly.
 pub(crate) const MIXED: f64 = 0.5;
+/// Displacement of a rough sweep over the tolerance of a sweep, from which on whole ones go on.
+const NEAR: f64 = 3.0;
 /// Sweeps over those asked for where they go in part or the wake still moves.
 const MORE_SWEEPS: usize = 3;
 /// Updates without gain at the least part, after which a stage ends, unless the last one still fell from that before.
@@ -232,6 +234,10 @@ impl Coupling<'_> {
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;
         let mut wake = now.wake.clone();
         wake.set_condition(now.trim.flight, mean, lines)?;
+        // on a new grid the wake is far from where it settles
+        if now.displacement.is_infinite() && self.settings.method == WakeMethod::Relaxed {
+            self.brought_near(&mut wake, &circulation)?;
+        }
         let (displacement, gone) = self.carried_on(&mut wake, &circulation, part)?;
         let frozen = now.frozen.moved_on(wake.line_induction(&circulation)?, &circulation)?;
         let mut next = self.in_still_wake((wake, frozen), circulation, &now.trim)?;
@@ -248,6 +254,20 @@ impl Coupling<'_> {
             theta0_rad: next.trim.controls.theta0_rad,
         });
         Ok(next)
+    }
+
+    /// Moves the wake on by rough sweeps while it is far from settled.
+    fn brought_near(
+        &self,
+        wake: &mut FreeWake,
+        circulation: &CirculationMap,
+    ) -> Result<(), WakeError> {
+        for _ in 0..MORE_SWEEPS * self.settings.sweeps {
+            if wake.rough_sweep(circulation)? <= NEAR * self.settings.displacement_tolerance {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Moves the wake on by the sweeps or revolutions of an update, of which it goes a part; returns the last displacement

@@ -3,3 +3,4 @@
 mod body;
 mod kernel;
 mod properties;
+mod sweeps;
