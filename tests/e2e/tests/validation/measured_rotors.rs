@@ -64,7 +64,7 @@ pub(crate) const ROWS: &[Check] = &[
         "% R",
     )
     .against(HART)
-    .near(3.06, 0.3, || vertical_distance(baseline()?)),
+    .near(3.06, 0.15, || vertical_distance(baseline()?)),
     row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
         .at_least(0.85, || Ok(level()?.curve(Quantity::Normal)?.from_1.correlation)),
