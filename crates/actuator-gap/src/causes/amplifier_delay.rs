@@ -14,7 +14,13 @@ pub(super) const CAUSE: BenchCause = BenchCause {
         parameters: vec![lag("delay", design)],
         class: Class::LagBeforeTerminals,
         fingerprint: "phase exactly straight in frequency, before the hysteresis",
-        confused_with: &["electrical-lag", "transport-delay", "sensor-filter", "rate-dependence"],
+        confused_with: &[
+            "electrical-lag",
+            "amplifier-current-limit",
+            "transport-delay",
+            "sensor-filter",
+            "rate-dependence",
+        ],
         separating: &["amplifier-monitor", "multisine-5-181Hz"],
         starts: singles(lags_s(design)),
         blocked: design.one_frequency().or_else(|| {
