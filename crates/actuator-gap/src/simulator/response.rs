@@ -3,7 +3,7 @@
 //! What the front and the rear of a [`Chain`] make of the runs is kept for a while: a search that moves a stage
 //! of the rear simulates the rear alone. Hum is added to the output of all others.
 
-use super::smooth::{Smooth, Weights};
+use super::smooth::{Smooth, Weights, turning};
 use crate::base::BaseModel;
 use crate::causes::{
     BenchCause, Chain, Command, FrontStages, Loops, Rate, RearStages, chain_under, looped,
@@ -219,6 +219,13 @@ impl<'a> Plant<'a> {
                         ringing(&signal, known, *mode, run.step_s)
                     }
                     LinkageStage::LogCreep(creep) => crept(&signal, creep, run.step_s),
+                    LinkageStage::Backlash(_) | LinkageStage::CoulombFriction(_) => {
+                        // a joint feels how far the motion goes, between two samples too
+                        let (numbers, turned): (Vec<_>, Vec<f64>) = turning(&signal).unzip();
+                        let add = |own: &mut ActuatorModel| own.linkage.push(stage.clone());
+                        let passed = self.through(add, &turned, run)?.measured_deg;
+                        numbers.iter().zip(passed).filter_map(|(own, y)| own.map(|_| y)).collect()
+                    }
                     other => {
                         let add = |own: &mut ActuatorModel| own.linkage.push(other.clone());
                         self.through(add, &signal, run)?.measured_deg
