@@ -212,6 +212,12 @@ impl Candidate {
         };
         self.class == other.class && is_untold(self) && is_untold(other)
     }
+
+    /// Whether it changes the scale of the output and hardly its form: a static gain without a shape of its own. A fit
+    /// does not part two of these, a channel does.
+    pub fn is_scale(&self) -> bool {
+        self.class == Class::StaticGain && self.parameters.iter().all(|own| !own.is_shape)
+    }
 }
 
 /// A cause switched on, with values of its parameters.

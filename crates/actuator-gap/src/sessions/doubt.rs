@@ -1,9 +1,10 @@
 //! What noise, range and simulation of the two sessions do not bear out.
 
-use super::over_time::change_over_session;
+use super::over_time::{DOUBTED, TOLD, change_over_session};
 use super::{GivenModel, noisier, share_beyond};
 use crate::base::BaseModel;
 use crate::record::Record;
+use model_gap::Class;
 use model_gap::discovery::{Confidence, Finding, Reason, Verdict};
 
 /// Share of the measured samples that may lie where no reference run has been.
@@ -27,9 +28,17 @@ pub(crate) fn doubt(finding: &mut Finding, sessions: &Sessions<'_>) {
         finding.confidence = Confidence::Tentative;
         finding.reasons.push(reason);
     }
-    // a cause that is sure explains what would look like a change with time
-    if finding.confidence == Confidence::Tentative {
-        finding.reasons.extend(change_over_session(sessions.runs, sessions.base));
+    // another cause that is sure explains what would look like a change with time; a constant gain does not
+    let is_gain = finding.class.as_ref().is_some_and(|own| own.class == Class::StaticGain);
+    if (is_gain || finding.confidence == Confidence::Tentative)
+        && let Some(change) =
+            change_over_session(sessions.runs, sessions.base, if is_gain { DOUBTED } else { TOLD })
+    {
+        if is_gain {
+            be_tentative(finding, change);
+        } else {
+            finding.reasons.push(change);
+        }
     }
     if sessions.takes_for_true {
         be_tentative(finding, Reason::TakenForTrue);

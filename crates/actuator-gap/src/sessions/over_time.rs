@@ -11,8 +11,10 @@ use rotor_base::variance;
 const LEAST_RUNS: usize = 5;
 /// Part of the spread of the output below which a run does not tell a gain.
 const LEAST_MOTION: f64 = 0.2;
-/// Probability of so large a change by chance, each of gain and zero.
-const BY_CHANCE: f64 = 5e-3;
+/// Probability of so large a change by chance, each of gain and zero, for a change to be told.
+pub(super) const TOLD: f64 = 5e-3;
+/// The same for a change to make a constant gain doubtful.
+pub(super) const DOUBTED: f64 = 0.05;
 /// Change over the session from which it matters: of the gain, and of the zero over the spread of the output.
 const LEAST_CHANGE: f64 = 0.01;
 
@@ -24,7 +26,11 @@ const LEAST_CHANGE: f64 = 0.01;
 /// `x_i` is what run `i` moves over what the base model expects of it, less 1, or its mean error. `t_i` is when the run began
 /// (`start_s`), or its place among the runs where one of them does not say it. Scatter of the base model from run to run
 /// is in `s(b)`.
-pub(super) fn change_over_session(runs: &[&Record], base: &BaseModel) -> Option<Reason> {
+pub(super) fn change_over_session(
+    runs: &[&Record],
+    base: &BaseModel,
+    by_chance: f64,
+) -> Option<Reason> {
     let stated: Option<Vec<f64>> = runs.iter().map(|run| run.start_s).collect();
     let is_stated = stated.is_some();
     let times = stated.unwrap_or_else(|| (0..runs.len()).map(|i| i as f64).collect());
@@ -40,7 +46,7 @@ pub(super) fn change_over_session(runs: &[&Record], base: &BaseModel) -> Option<
     let found = [(true, line(&gains)), (false, line(&zeros))].into_iter();
     let found = found.filter_map(|(is_gain, line)| Some((is_gain, line?)));
     let sure =
-        found.filter(|(_, own)| own.by_chance < BY_CHANCE && own.change().abs() > LEAST_CHANGE);
+        found.filter(|(_, own)| own.by_chance < by_chance && own.change().abs() > LEAST_CHANGE);
     let (is_gain, own) = sure.min_by(|a, b| a.1.by_chance.total_cmp(&b.1.by_chance))?;
     let [first, last] = own.ends.map(|end| 100.0 * end);
     Some(Reason::ChangesOverSession {

@@ -11,8 +11,8 @@ use std::borrow::Cow;
 
 /// Samples that a quintic goes through, from the second before an interval to the second after it.
 const POINTS: usize = 6;
-/// Parts of an interval at whose ends a turn is looked for: between two of them it goes on by a 300th of what a sample
-/// misses.
+/// Parts of an interval at whose ends a turn is looked for: what they miss of it is at most a 64th of what the samples may
+/// miss.
 const INSIDE: u32 = 8;
 /// Largest exponent of a step up to which its moments are summed by quadrature.
 const LARGEST_SUMMED: f64 = 6.0;

@@ -505,7 +505,9 @@ impl<'a, S: Simulator> Search<'a, S> {
             // what explains much less explains something else
             discrimination_threshold = discrimination_threshold.min(margin.max(RIVAL_LACK * drop));
             let [own, other] = [chosen[at], candidate].map(|c| &self.discovery.candidates[c]);
-            if own.is_one_set_with(other) && reached > SAME_GAIN * drop {
+            // errors of form of the base model outweigh what parts two changes of scale, in every run as in all
+            let are_scales = own.is_one_set_with(other) && own.is_scale() && other.is_scale();
+            if are_scales || own.is_one_set_with(other) && reached > SAME_GAIN * drop {
                 // as likely, whatever the fit says
                 let least = 1.01 / AS_LIKELY * delta_chi2.max(0.0);
                 discrimination_threshold = discrimination_threshold.max(least);
@@ -513,10 +515,8 @@ impl<'a, S: Simulator> Search<'a, S> {
             let compared_with = Compared { candidate, delta_chi2, discrimination_threshold };
             // one that fits far worse is excluded already; one that differs from run to run is no better than a name
             let last = fit.effects.len() - 1;
-            if compared_with.is_near()
-                && (self.contradicted(fit)?.is_some()
-                    || self.doubts_of(fit, Some(last)).1 > WRONG_NAME)
-            {
+            let differs = || !are_scales && self.doubts_of(fit, Some(last)).1 > WRONG_NAME;
+            if compared_with.is_near() && (self.contradicted(fit)?.is_some() || differs()) {
                 continue;
             }
             compared.push((compared_with, fit));
