@@ -26,8 +26,8 @@ pub use files::{
     refuse_inside, refuse_unwritable, ron_text, write_atomic, write_folder, write_new,
 };
 pub use tables::{
-    Channel, ChannelFile, Channels, ColumnTable, Dimension, MeasuredTable, UNITS, Unit, limits,
-    parse_columns, parse_measured_csv, significant,
+    Channel, ChannelFile, Channels, ColumnTable, Dimension, MeasuredTable, PointCsv, UNITS, Unit,
+    limits, parse_columns, parse_measured_csv, significant,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -28,8 +28,10 @@ pub struct Parameter {
     /// Whether it only shapes the effect: fitted, but neither reported nor judged, because candidates of
     /// one cause may shape it differently.
     pub is_shape: bool,
-    /// Whether it is an amount of the effect: at zero there is none.
+    /// Whether it is an amount of the effect: at [`Self::none`] there is none.
     pub is_amount: bool,
+    /// Value of an amount at which there is no effect, such as 1 of a ratio.
+    pub none: f64,
     /// Whether a weak effect grows in proportion to it, as with a lag or a width; an amount always does.
     pub grows: bool,
     /// What must be measured besides before the value means anything; none if these data suffice. Without
@@ -89,7 +91,7 @@ impl Parameter {
         let slack = 1e-2 * (high - low);
         let [a, b] = interval.map(|v| self.coordinate(v));
         let is_whole = a <= low + slack && b >= high - slack;
-        is_whole || (self.is_amount && interval[0] <= 0.0 && interval[1] >= 0.0)
+        is_whole || (self.is_amount && interval[0] <= self.none && interval[1] >= self.none)
     }
 
     /// Whether a value lies at an end of the range, to one part in a thousand of it.

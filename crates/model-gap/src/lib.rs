@@ -11,6 +11,7 @@
 //! - [`EnergySplit`]: which part of the measured energy is explained, which is noise, and which is
 //!   structure that the simulation misses;
 //! - [`discovery`]: which of given causes explain a misfit, if any does;
+//! - [`points`]: the same at points of test, with anyone's simulation as tables;
 //! - [`in_common`]: what the misfits of several specimens have in common.
 //!
 //! Residuals are measured minus simulated throughout.
@@ -43,6 +44,7 @@ mod in_common;
 mod memo;
 mod misfit;
 mod noise;
+pub mod points;
 mod quantile;
 mod resampling;
 mod sine;

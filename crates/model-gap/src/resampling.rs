@@ -91,6 +91,11 @@ impl SplitMix {
         let radius = (-2.0 * (1.0 - uniform()).ln()).sqrt();
         radius * (std::f64::consts::TAU * uniform()).cos()
     }
+
+    /// So many normal numbers of a standard deviation.
+    pub fn normals(&mut self, deviation: f64, count: usize) -> Vec<f64> {
+        (0..count).map(|_| deviation * self.normal()).collect()
+    }
 }
 
 #[cfg(test)]

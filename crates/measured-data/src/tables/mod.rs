@@ -3,6 +3,7 @@
 mod column_csv;
 mod loop_csv;
 mod measured_csv;
+mod point_csv;
 mod record_checks;
 mod sampling;
 mod text;
@@ -13,6 +14,7 @@ pub use loop_csv::{ChannelFile, Channels};
 pub(crate) use loop_csv::{Declared, Rows, input_and_output, parse_loop_csv, parse_rows};
 pub(crate) use measured_csv::QUANTITIES;
 pub use measured_csv::{MeasuredTable, parse_measured_csv};
+pub use point_csv::PointCsv;
 pub use record_checks::limits;
 pub(crate) use record_checks::{Record, check_lag, check_record, check_unit};
 pub(crate) use sampling::{Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling};

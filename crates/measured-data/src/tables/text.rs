@@ -187,22 +187,19 @@ impl<R: Read> TextTable<R> {
         }
     }
 
-    /// Reads the numbers of every row in the columns `wanted`, each with its label. `take` gets them
-    /// with the line of the row, or none where the row cannot be read: `problems` then say why.
-    pub(crate) fn numbers(
+    /// Reads the cells of every row, each with the column of its first character. `take` gets them with the line of the
+    /// row, or none where the row has another number of fields than the header: `problems` then say so.
+    pub(crate) fn rows(
         mut self,
-        wanted: &[(usize, String)],
         problems: &mut Problems,
-        mut take: impl FnMut(Option<&[f64]>, usize, &mut Problems),
+        mut take: impl FnMut(Option<&[(&str, usize)]>, usize, &mut Problems),
     ) -> Result<(), Problem> {
         let expected = self.header.len();
-        let mut lists: [Listing; 3] = Default::default();
-        let [counts, sizes, words] = &mut lists;
+        let mut counts = Listing::default();
         let mut usual_decimals = None;
-        let mut numbers = Vec::with_capacity(wanted.len());
         while let Some(row) = self.row()? {
             let cells = row.cells(self.separator);
-            let place = |column| Place::at(&self.file, row.line, column);
+            let place = Place::at(&self.file, row.line, 1);
             let last = cells.last().map_or("", |(text, _)| *text);
             let decimals = last.split_once('.').map(|(_, decimals)| decimals.len());
             // a last number with fewer decimals than the rows before promise is cut off as well
@@ -210,7 +207,7 @@ impl<R: Read> TextTable<R> {
             if !row.is_ended && (cells.len() < expected || last.is_empty() || is_short) {
                 let text = cells.iter().map(|(text, _)| *text).collect::<Vec<_>>().join(",");
                 let text = text.chars().take(SHOWN).collect();
-                problems.push(place(1), Fault::Truncated { text, expected });
+                problems.push(place, Fault::Truncated { text, expected });
                 break;
             }
             usual_decimals = decimals;
@@ -219,35 +216,62 @@ impl<R: Read> TextTable<R> {
                     "the row has {} fields, the header has {expected}; check separators and decimal commas",
                     cells.len()
                 ));
-                counts.push(problems, place(1), fault);
+                counts.push(problems, place, fault);
                 take(None, row.line, problems);
                 continue;
             }
+            take(Some(&cells), row.line, problems);
+        }
+        counts.finish(problems);
+        Ok(())
+    }
+
+    /// Reads the numbers of every row in the columns `wanted`, each with its label. `take` gets them
+    /// with the line of the row, or none where the row cannot be read: `problems` then say why.
+    pub(crate) fn numbers(
+        self,
+        wanted: &[(usize, String)],
+        problems: &mut Problems,
+        mut take: impl FnMut(Option<&[f64]>, usize, &mut Problems),
+    ) -> Result<(), Problem> {
+        let file = self.file.clone();
+        let mut lists: [Listing; 2] = Default::default();
+        let [sizes, words] = &mut lists;
+        let mut numbers = Vec::with_capacity(wanted.len());
+        self.rows(problems, |cells, line, problems| {
+            let Some(cells) = cells else { return take(None, line, problems) };
             numbers.clear();
             for (column, label) in wanted {
                 let (text, at) = cells[*column];
-                let field = || place(at).field(label);
-                match text.parse::<f64>() {
-                    Ok(value) if value.abs() <= LARGEST => numbers.push(value),
-                    Ok(value) if value.is_finite() => {
-                        let fault = Fault::Other(format!(
-                            "the value is {value:e}, expected no more than {LARGEST:e} in size: no channel of a bench reads so much; remove the record's bad samples at the source, they are not interpolated here"
-                        ));
-                        sizes.push(problems, field(), fault);
-                    }
-                    Ok(value) => sizes.push(problems, field(), Fault::NotFinite { value }),
-                    Err(_) => {
-                        words.push(problems, field(), Fault::NotANumber { text: text.to_owned() });
-                    }
+                let field = || Place::at(&file, line, at).field(label);
+                match number(text) {
+                    Ok(value) => numbers.push(value),
+                    Err(fault @ Fault::NotANumber { .. }) => words.push(problems, field(), fault),
+                    Err(fault) => sizes.push(problems, field(), fault),
                 }
             }
             let good = (numbers.len() == wanted.len()).then_some(numbers.as_slice());
-            take(good, row.line, problems);
-        }
+            take(good, line, problems);
+        })?;
         for list in lists {
             list.finish(problems);
         }
         Ok(())
+    }
+}
+
+/// The number of a cell.
+///
+/// # Errors
+/// [`Fault::NotANumber`], [`Fault::NotFinite`], or a number no channel reads.
+pub(crate) fn number(text: &str) -> Result<f64, Fault> {
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= LARGEST => Ok(value),
+        Ok(value) if value.is_finite() => Err(Fault::Other(format!(
+            "the value is {value:e}, expected no more than {LARGEST:e} in size: no channel of a bench reads so much; remove the record's bad samples at the source, they are not interpolated here"
+        ))),
+        Ok(value) => Err(Fault::NotFinite { value }),
+        Err(_) => Err(Fault::NotANumber { text: text.to_owned() }),
     }
 }
 

@@ -5,13 +5,12 @@ use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::drift;
 use super::thresholds::{
-    COMMON_SEEN, DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE,
-    LEAST_SHARE_OF_RUNS, STRAINED, STRAINED_BESIDE, STRONG, WEAK_EFFECT, WRONG_NAME, least_effect,
-    limit_share,
+    DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE,
+    LEAST_SHARE_OF_RUNS, STRAINED, STRAINED_BESIDE, STRONG, WRONG_NAME, least_effect, limit,
 };
 use super::{
     Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator, StandsOut,
-    Verdict,
+    Verdict, Yardstick,
 };
 use crate::{Class, GapError, Scale};
 
@@ -40,13 +39,14 @@ impl<S: Simulator> Search<'_, S> {
         reasons.extend(
             worst.map(|worst| Reason::BandsLeft { bands: bands_left.len(), worst: *worst }),
         );
-        let gain = gain(&self.folds, self.evidence, current, settings.resamplings)?;
+        let held_out = gain(&self.folds, self.evidence, current, settings.resamplings)?;
         let (unseen, are_borne_out) = self.borne_out(&causes);
         let is_unseen = unseen.is_some();
         let is_beside = |c: &usize| self.discovery.candidates[*c].is_beside_output;
         let is_beside = chosen.iter().all(is_beside);
         // a gain that no held-out run can show is not stated
-        let gain = gain.filter(|_| !is_unseen && !is_beside);
+        let held_out = held_out.filter(|_| !is_unseen && !is_beside);
+        let (gain, held_out_residuals) = held_out.unzip();
         let [least, most] = gain.map_or([1.0; 2], |gain| gain.drop_ci95);
         let (gains, gains_surely) = (most > 0.0, least > 0.0);
         if !gains {
@@ -114,6 +114,7 @@ impl<S: Simulator> Search<'_, S> {
             bands_left,
             residual_before: self.base.cleaned(self.evidence),
             residual_after: current.cleaned(self.evidence),
+            held_out_residuals,
         })
     }
 
@@ -142,7 +143,9 @@ impl<S: Simulator> Search<'_, S> {
         let strain = self.evidence.strain(base, self.discovery.calibrations);
         let (sees_all, is_calibrated) = (missed.is_empty(), strain <= STRAINED);
         if !sees_all {
-            reasons.push(Reason::WouldBeMissed { share: COMMON_SEEN, causes: missed });
+            let yardstick = self.discovery.settings.yardstick;
+            let share = (yardstick == Yardstick::OutputSpread).then(|| yardstick.matters());
+            reasons.push(Reason::WouldBeMissed { share, causes: missed });
         }
         if !is_calibrated {
             reasons.push(Reason::CalibrationOff { times: strain });
@@ -158,10 +161,15 @@ impl<S: Simulator> Search<'_, S> {
     fn limits(&self) -> Vec<Option<f64>> {
         let left = self.evidence.left_of_outputs(&self.base, self.discovery.calibrations);
         let least = least_effect(left, self.evidence.output_samples());
+        let yardstick = self.discovery.settings.yardstick;
         let limit = |(c, s): (usize, &Screened)| {
             let is_seen = self.discovery.candidates[c].blocked.is_none() && s.weak_signal > 0.0;
-            let by_chi2 = limit_share(s.weak_signal, s.threshold + self.penalty(c));
-            is_seen.then(|| by_chi2.max(WEAK_EFFECT * least / s.weak_drop.sqrt()))
+            let by_chi2 = limit(s.weak_signal, s.threshold + self.penalty(c));
+            let of_weak = match yardstick {
+                Yardstick::OutputSpread => by_chi2.max(least / s.weak_drop.sqrt()),
+                Yardstick::FirstStart => by_chi2,
+            };
+            is_seen.then(|| yardstick.weak() * of_weak)
         };
         self.screened.iter().enumerate().map(limit).collect()
     }
@@ -169,8 +177,9 @@ impl<S: Simulator> Search<'_, S> {
     /// The common causes that would have been missed at a size that matters.
     fn would_be_missed(&self, limits: &[Option<f64>]) -> Vec<&'static str> {
         let candidates = self.discovery.candidates.iter().zip(limits);
+        let matters = self.discovery.settings.yardstick.matters();
         let missed = candidates.filter(|(own, limit)| {
-            own.is_common && own.refuted.is_none() && limit.is_none_or(|share| share > COMMON_SEEN)
+            own.is_common && own.refuted.is_none() && limit.is_none_or(|size| size > matters)
         });
         missed.map(|(own, _)| own.id).collect()
     }
@@ -273,7 +282,7 @@ impl<S: Simulator> Search<'_, S> {
             let found = drift(self.evidence, current, k);
             let spread = match parameter.scale {
                 Scale::Log => found.spread,
-                Scale::Linear => found.spread / value.abs().max(1e-300),
+                Scale::Linear => found.spread / (value - parameter.none).abs().max(1e-300),
             };
             let cost = found.lost() / (self.base.cost - current.cost).max(1.0);
             if found.is_significant() && spread > DRIFTING && cost > DRIFT_COSTS[0] {

@@ -8,9 +8,11 @@ use super::screen::screen;
 use super::thresholds::{
     AS_LIKELY, CONFUSED_SHARE, HELD_OUT_SHARE, LEAST_GAIN, NEXT_SHARE, PARAMETER_PENALTY, PROMISE,
     RIVAL_LACK, RIVAL_PROMISE, SAME_GAIN, SEPARATION, STRONG, STRUCTURE_MARGIN, SWAY_SHARE,
-    WRONG_NAME, needed_to_separate,
+    WRONG_NAME, needed_between, needed_to_separate,
 };
-use super::{Alternative, Compared, Discovery, Finding, Found, Reason, Rival, Screened, Simulator};
+use super::{
+    Alternative, Compared, Discovery, Finding, Found, Reason, Rival, Screened, Simulator, Yardstick,
+};
 use crate::{Effect, GapError, Memo};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -311,7 +313,9 @@ impl<'a, S: Simulator> Search<'a, S> {
         }
         let left = |fit| self.evidence.left_of_outputs(fit, self.discovery.calibrations);
         let (drop_of_outputs, needed) = (left(current) - left(next), self.least_gain(current));
-        if !self.discovery.candidates[candidate].is_beside_output && drop_of_outputs < needed {
+        let must_matter = self.discovery.settings.yardstick == Yardstick::OutputSpread
+            && !self.discovery.candidates[candidate].is_beside_output;
+        if must_matter && drop_of_outputs < needed {
             return Ok(Err(Reason::Negligible { cause, drop: drop_of_outputs, needed }));
         }
         match self.held_out(current, next)? {
@@ -491,7 +495,6 @@ impl<'a, S: Simulator> Search<'a, S> {
         let TakenOut { rest, fits } = &*out;
         let drop = rest.cost - current.cost;
         let output_drop = self.output_drop(rest, current);
-        let margin = needed_to_separate(output_drop);
         let mut compared: Vec<(Compared, &Fitted)> = Vec::new();
         for (candidate, fit) in fits.iter().enumerate() {
             let Some(fit) = fit.as_ref().filter(|_| !chosen.contains(&candidate)) else { continue };
@@ -500,11 +503,17 @@ impl<'a, S: Simulator> Search<'a, S> {
             let reached = (rest.cost - fit.cost).max(fit.promised);
             let delta_chi2 = rest.cost - reached - current.cost + penalty;
             let error = drop_error(self.evidence, fit, current);
+            let [own, other] = [chosen[at], candidate].map(|c| &self.discovery.candidates[c]);
+            let margin = match self.discovery.settings.yardstick {
+                Yardstick::OutputSpread => needed_to_separate(output_drop),
+                Yardstick::FirstStart => {
+                    needed_between(output_drop, [own.form_error, other.form_error])
+                }
+            };
             let open = margin + self.structure_between(fit, current);
             let mut discrimination_threshold = open.max((2.0 * error).min(0.2 * drop));
             // what explains much less explains something else
             discrimination_threshold = discrimination_threshold.min(margin.max(RIVAL_LACK * drop));
-            let [own, other] = [chosen[at], candidate].map(|c| &self.discovery.candidates[c]);
             // errors of form of the base model outweigh what parts two changes of scale, in every run as in all
             let are_scales = own.is_one_set_with(other) && own.is_scale() && other.is_scale();
             if are_scales || own.is_one_set_with(other) && reached > SAME_GAIN * drop {

@@ -183,7 +183,8 @@ impl<S: Simulator> Fitter<'_, S> {
         let mut scaled = start.effects.clone();
         for (value, parameter) in scaled[place].values.iter_mut().zip(parameters) {
             if parameter.is_amount || parameter.grows {
-                *value = (*value * start.scale).clamp(parameter.low, parameter.high);
+                let sized = parameter.none + (*value - parameter.none) * start.scale;
+                *value = sized.clamp(parameter.low, parameter.high);
             }
         }
         if scaled == start.effects { vec![scaled] } else { vec![scaled, start.effects.clone()] }

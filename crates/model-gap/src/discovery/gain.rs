@@ -27,16 +27,18 @@ pub struct Gain {
 /// Squares of held-out residuals, block by block: of the base model, of the extended one, samples.
 type Block = (f64, f64, f64);
 
+/// Samples below which a trace does not tell its own noise: that of its channel is drawn, as white.
+const LEAST_DRAWN: usize = 64;
 /// Draws of the noise; the interval takes the quantile of Student's distribution for as many.
 const DRAWS: u64 = 40;
 
-/// The gain of causes with both intervals; none where nothing can be held out.
+/// The gain of causes with both intervals, and the residuals of base and extended model held out; none where nothing can be held out.
 pub(super) fn gain<S: Simulator>(
     folds: &Folds<'_, S>,
     evidence: &Evidence<'_>,
     extended: &Fitted,
     resamplings: usize,
-) -> Result<Option<Gain>, GapError> {
+) -> Result<Option<(Gain, [Signal; 2])>, GapError> {
     if extended.effects.is_empty() || !folds.hold_out() {
         return Ok(None);
     }
@@ -75,7 +77,9 @@ pub(super) fn gain<S: Simulator>(
         .collect();
     drops.sort_by(f64::total_cmp);
     let at = |share: f64| quantile(&drops, share).unwrap_or(rms_before - rms_after);
-    Ok(Some(Gain { rms_before, rms_after, drop_ci95, drop_elsewhere_ci95: [at(0.025), at(0.975)] }))
+    let drop_elsewhere_ci95 = [at(0.025), at(0.975)];
+    let gain = Gain { rms_before, rms_after, drop_ci95, drop_elsewhere_ci95 };
+    Ok(Some((gain, [before, after])))
 }
 
 /// Interval of the drop under other noise: a residual bootstrap, the residual less its noise held, the fits
@@ -87,8 +91,11 @@ fn repeated<S: Simulator>(
     fits: [&[FoldFit]; 2],
     held_out: [&Signal; 2],
 ) -> [f64; 2] {
-    let noise: Signal =
-        extended.cleaned(evidence).iter().map(|left| NoiseDraw::BROAD.noise_of(left)).collect();
+    let left = extended.cleaned(evidence);
+    let of_one = |left: &Vec<f64>| {
+        if left.len() < LEAST_DRAWN { left.clone() } else { NoiseDraw::BROAD.noise_of(left) }
+    };
+    let noise: Signal = left.iter().map(of_one).collect();
     let still: Vec<Signal> = fits
         .iter()
         .zip(held_out)
@@ -99,7 +106,15 @@ fn repeated<S: Simulator>(
         .map(|draw| {
             let other: Signal = (0_u64..)
                 .zip(&noise)
-                .map(|(trace, own)| NoiseDraw::BROAD.again(own, (draw << 32) + trace))
+                .zip(evidence.traces)
+                .map(|((number, own), trace)| {
+                    let seed = (draw << 32) + number;
+                    if own.len() < LEAST_DRAWN {
+                        SplitMix(seed).normals(trace.noise, own.len())
+                    } else {
+                        NoiseDraw::BROAD.again(own, seed)
+                    }
+                })
                 .collect();
             let size = |which: usize| {
                 output_rms(evidence, &still[which], &folds.under(evidence, fits[which], &other))

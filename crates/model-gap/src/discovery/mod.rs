@@ -21,6 +21,7 @@ pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use thresholds::needed_to_separate;
+pub(crate) use thresholds::{SURELY, needed_between};
 pub use verdict::{
     Alternative, Compared, Confidence, Finding, FittedParameter, Found, FoundClass, StandsOut,
     Verdict,
@@ -65,11 +66,25 @@ pub struct Settings {
     pub has_reference: bool,
     /// Resamplings of the gain's interval.
     pub resamplings: usize,
+    /// What the size of an effect is counted in.
+    pub yardstick: Yardstick,
+}
+
+/// What the size of an effect is counted in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Yardstick {
+    /// The spread of the outputs, which have one unit: a cause must lower their error by a part that matters.
+    #[default]
+    OutputSpread,
+    /// The effect at its own first start, the amount that who asks holds for one that matters. For outputs of several
+    /// units, whose spread means nothing.
+    FirstStart,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { most_causes: 3, has_reference: true, resamplings: 1000 }
+        let yardstick = Yardstick::default();
+        Self { most_causes: 3, has_reference: true, resamplings: 1000, yardstick }
     }
 }
 

@@ -261,12 +261,16 @@ pub enum Reason {
     },
     /// A common cause of a size that matters could have been missed.
     #[error(
-        "nothing was seen, but these would have been missed at {:.0} % of the output: {}",
-        .share * 100.0, .causes.join(", ")
+        "nothing was seen, but these would have been missed at {}: {}",
+        .share.map_or_else(
+            || "the amount stated".to_owned(),
+            |share| format!("{:.0} % of the output", share * 100.0)
+        ),
+        .causes.join(", ")
     )]
     WouldBeMissed {
-        /// The size, over the output.
-        share: f64,
+        /// The size, over the output; none where every cause has its own.
+        share: Option<f64>,
         /// The causes.
         causes: Vec<&'static str>,
     },

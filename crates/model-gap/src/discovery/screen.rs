@@ -1,8 +1,8 @@
 //! What each candidate could explain, before any fit.
 
 use super::evidence::{Evidence, columns, difference};
-use super::thresholds::{FALSE_ALARM, OTHER_SIGN, STRUCTURE_MARGIN, WEAK_EFFECT};
-use super::{Discovery, Signal, Simulator};
+use super::thresholds::{FALSE_ALARM, OTHER_SIGN, STRUCTURE_MARGIN};
+use super::{Discovery, Signal, Simulator, Yardstick};
 use crate::quantile::normal_exceeded;
 use crate::{Effect, GapError};
 use rayon::prelude::*;
@@ -18,8 +18,8 @@ pub struct Screened {
     /// What surrogates without any missing effect reach, with a margin for noise: below it there is
     /// nothing to name.
     pub threshold: f64,
-    /// Drop of the misfit expected of a weak effect, a hundredth of the output, in
-    /// units of the noise variance.
+    /// Drop of the misfit expected of a weak effect, a hundredth of the output or the first start, in units of the noise
+    /// variance.
     pub weak_signal: f64,
     /// Mean square on the outputs that an effect of that size would take off their error, the channels calibrated as in
     /// the reference runs.
@@ -95,7 +95,8 @@ fn one<S: Simulator>(
         .collect::<Result<_, GapError>>()?;
     let known = evidence.seen(&columns(misfit, discovery.structures));
     let seen = evidence.seen(&signals.iter().collect::<Vec<_>>());
-    let weak = WEAK_EFFECT.powi(2) * evidence.output_energy();
+    let yardstick = discovery.settings.yardstick;
+    let weak = yardstick.weak().powi(2) * evidence.output_energy();
     let spread = evidence.output_variance();
     let mut best = nothing;
     let mut found = None;
@@ -127,13 +128,17 @@ fn one<S: Simulator>(
                 }
             }
         }
-        if on_output > 1e-9 * whole {
+        if yardstick == Yardstick::FirstStart {
+            if start == 0 {
+                best.weak_signal = size;
+            }
+        } else if on_output > 1e-9 * whole {
             best.weak_signal = best.weak_signal.max(weak * size / on_output);
             // the same part of an effect that is a hundredth of the output
             let shown =
                 evidence.output_square(&evidence.as_calibrated(signal, discovery.calibrations));
             let part = shown / evidence.output_square(&signals[start]).max(1e-300);
-            best.weak_drop = best.weak_drop.max(WEAK_EFFECT.powi(2) * spread * part);
+            best.weak_drop = best.weak_drop.max(yardstick.weak().powi(2) * spread * part);
         }
         let along = evidence.inner(signal, &known[0]);
         let score = if along > 0.0 { along * along / size } else { 0.0 };

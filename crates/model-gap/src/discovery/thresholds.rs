@@ -68,11 +68,19 @@ pub(super) const SWAY_SHARE: f64 = 0.1;
 pub(super) const AS_LIKELY: f64 = 0.5;
 /// Multiple of the discrimination threshold that is required for a sure name: what surrogates can do is known
 /// from five of them.
-pub(super) const SURELY: f64 = 1.25;
+pub(crate) const SURELY: f64 = 1.25;
 /// Part of its own effect on the intermediate channels below which they do not show a cause.
 pub(super) const SHOWN: f64 = 0.5;
 /// Standard errors of that part that must lie between.
 pub(super) const SURE_ERRORS: f64 = 3.0;
+
+/// Times its error of form, in amplitude, by which the drop of a cause may be off where effects count in their own starts.
+const FORMS: f64 = 2.0;
+
+/// The same where the effects of both causes are known as well as their tables: `forms` are their errors of form.
+pub(crate) fn needed_between(drop: f64, forms: [f64; 2]) -> f64 {
+    SEPARATION + (FORMS * forms[0].max(forms[1])).powi(2) * drop
+}
 
 /// Share of the drop of a cause that another of its set must bring to stay open where no channel parts them.
 pub(super) const SAME_GAIN: f64 = 0.8;
@@ -82,12 +90,10 @@ pub(super) const SAME_GAIN: f64 = 0.8;
 /// Standard deviations by which an effect must lie above its threshold to be seen with 90 % probability.
 const SEEN: f64 = 1.2816;
 
-/// Size of an effect, rms over that of the output, whose drop would have exceeded `asked` with 90 % probability.
-///
-/// `weak_signal` is the drop that an effect of [`WEAK_EFFECT`] is expected to bring; drops grow with the square of an
-/// effect. Infinite where the base model takes all of it.
-pub(super) fn limit_share(weak_signal: f64, asked: f64) -> f64 {
-    WEAK_EFFECT * (asked.sqrt() + SEEN) / weak_signal.max(0.0).sqrt()
+/// Size of an effect, over that whose expected drop is `drop`, that would have exceeded `asked` with 90 % probability:
+/// drops grow with the square of an effect. Infinite where the base model takes all of it.
+pub(super) fn limit(drop: f64, asked: f64) -> f64 {
+    (asked.sqrt() + SEEN) / drop.max(0.0).sqrt()
 }
 
 /// RMS that an effect must have on `samples` of the outputs to take [`LEAST_GAIN`] off their error with 90 % probability;
@@ -103,6 +109,24 @@ pub(super) fn least_effect(left: f64, samples: f64) -> f64 {
 
 /// Size of every common cause, over the output, that must have been seen for a sure "nothing is missing".
 pub(super) const COMMON_SEEN: f64 = 0.03;
+
+impl super::Yardstick {
+    /// Size of a weak effect, in the yardstick.
+    pub(super) fn weak(self) -> f64 {
+        match self {
+            Self::OutputSpread => WEAK_EFFECT,
+            Self::FirstStart => 1.0,
+        }
+    }
+
+    /// Size of an effect that must have been seen for a sure "nothing is missing".
+    pub(super) fn matters(self) -> f64 {
+        match self {
+            Self::OutputSpread => COMMON_SEEN,
+            Self::FirstStart => 1.0,
+        }
+    }
+}
 
 /// Standard deviations that a calibration may be off before nothing is denied with confidence.
 pub(super) const STRAINED: f64 = 2.0;
@@ -161,7 +185,8 @@ mod tests {
                 description += text;
                 continue;
             }
-            let constant = line.strip_prefix("pub(super) ").unwrap_or(line).strip_prefix("const ");
+            let own = line.strip_prefix("pub(super) ").or_else(|| line.strip_prefix("pub(crate) "));
+            let constant = own.unwrap_or(line).strip_prefix("const ");
             if let Some((name, rest)) = constant.and_then(|own| own.split_once(':')) {
                 let value =
                     rest.split_once('=').map_or("", |own| own.1).trim().trim_end_matches(';');

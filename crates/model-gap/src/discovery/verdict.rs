@@ -142,8 +142,7 @@ pub struct Finding {
     pub causes: Vec<Found>,
     /// What kind of effect is missing; none where nothing is named.
     pub class: Option<FoundClass>,
-    /// Size of every candidate, rms over that of the output, that these data would have shown with 90 % probability;
-    /// none of one that they cannot show.
+    /// Size of every candidate, in the yardstick, that these data would have shown with 90 % probability; none of one that they cannot show.
     pub limits: Vec<Option<f64>>,
     /// The effects as fitted together.
     pub effects: Vec<Effect>,
@@ -167,4 +166,6 @@ pub struct Finding {
     pub residual_before: Vec<Vec<f64>>,
     /// Residual of the extended model, likewise.
     pub residual_after: Vec<Vec<f64>>,
+    /// Residuals of base and extended model on experiments that their fits have not seen; with [`Self::gain`].
+    pub held_out_residuals: Option<[Vec<Vec<f64>>; 2]>,
 }

@@ -4,4 +4,5 @@
 mod names;
 mod points;
 mod refusals;
+mod tables;
 mod toy;

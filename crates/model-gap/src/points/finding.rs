@@ -1,0 +1,130 @@
+//! What the tables lack: the engine of discovery on points of test.
+
+use super::floor::Floor;
+use super::next::{NextPoints, next_points};
+use super::predicted::Tables;
+use super::table::PointTable;
+use crate::discovery::{Discovery, Finding, Settings, Yardstick};
+use crate::{Candidate, GapError};
+
+/// What was found at points of test.
+#[derive(Debug, Clone)]
+pub struct PointFinding {
+    /// Verdict, causes and reasons. Its experiments are the measured points in their order; its numbers are over standard
+    /// deviations; its limits are over the first amount of each suspect.
+    pub finding: Finding,
+    /// The suspects as the engine saw them.
+    pub candidates: Vec<Candidate>,
+    /// The measured points, by number in the table.
+    pub measured: Vec<usize>,
+    /// The error of every channel before and after, on points that the fits have not seen; empty without a gain.
+    pub gains: Vec<ChannelGain>,
+    /// Error of the simulation that no alternative holds, by channel and in its unit.
+    pub model_error: Vec<f64>,
+    /// What to measure next; none where nothing is open or no point tells it apart.
+    pub next: Option<NextPoints>,
+}
+
+/// The error of a channel on points held out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelGain {
+    /// Position among the channels.
+    pub channel: usize,
+    /// Values it rests on.
+    pub values: usize,
+    /// Root of the mean square of measured less simulated, in the unit of the channel.
+    pub rms_before: f64,
+    /// The same with what was found.
+    pub rms_after: f64,
+    /// Both over the standard deviations of the values.
+    pub in_deviations: [f64; 2],
+}
+
+impl PointTable {
+    /// Finds what the simulation lacks, or says that nothing is, or that it has no name.
+    ///
+    /// Data of fewer values than there are parameters to choose from are not asked for a name.
+    ///
+    /// # Errors
+    /// As [`Discovery::find`]; [`GapError::Length`], [`GapError::NotFinite`], [`GapError::OutOfRange`] and
+    /// [`GapError::TooShort`] of a table that is none.
+    pub fn find(&self) -> Result<PointFinding, GapError> {
+        self.search(None)
+    }
+
+    /// Fits the suspects given, by number, together and refuses nothing.
+    ///
+    /// # Errors
+    /// As [`Self::find`].
+    pub fn refit(&self, given: &[usize]) -> Result<PointFinding, GapError> {
+        self.search(Some(given))
+    }
+
+    fn search(&self, given: Option<&[usize]>) -> Result<PointFinding, GapError> {
+        self.check()?;
+        let floor = Floor::of(self)?;
+        let tables = Tables::of_measured(self, floor.sigma.clone());
+        let (traces, calibrations) = floor.traces(&tables);
+        let generic = Floor::generic(&tables);
+        let mut candidates = tables.candidates();
+        let (values, parameters) = (self.values(), self.parameters());
+        if values <= parameters {
+            for own in &mut candidates {
+                own.blocked.get_or_insert_with(|| {
+                    format!("{values} values do not choose between {parameters} parameters: measure more points or channels")
+                });
+            }
+        }
+        let groups: Vec<usize> = tables.rows.iter().map(|(p, _)| self.points[*p].group).collect();
+        let settings = Settings {
+            has_reference: self.knows_deviations,
+            yardstick: Yardstick::FirstStart,
+            ..Settings::default()
+        };
+        let discovery = Discovery {
+            generic: &generic,
+            groups: &groups,
+            calibrations,
+            settings,
+            ..Discovery::new(&traces, &tables, &candidates)
+        };
+        let finding = match given {
+            Some(given) => discovery.refit(given)?,
+            None => discovery.find()?,
+        };
+        let next = next_points(self, &floor, &candidates, &finding)?;
+        let gains = self.gains(&tables, &finding);
+        let measured = tables.rows.iter().map(|(p, _)| *p).collect();
+        let model_error = floor.model_error;
+        Ok(PointFinding { finding, candidates, measured, gains, model_error, next })
+    }
+
+    /// The held-out errors channel by channel.
+    fn gains(&self, tables: &Tables<'_>, finding: &Finding) -> Vec<ChannelGain> {
+        let Some(residuals) = &finding.held_out_residuals else { return Vec::new() };
+        let of_channel = |channel: usize| {
+            // squares in the unit and over the deviation, before and after
+            let mut sums = [[0.0; 2]; 2];
+            let mut values = 0;
+            for (row, (p, channels)) in tables.rows.iter().enumerate() {
+                let Some(place) = channels.iter().position(|&c| c == channel) else { continue };
+                let sigma = tables.sigma[*p][channel];
+                values += 1;
+                for (sum, residual) in sums.iter_mut().zip(residuals) {
+                    let off = residual[row][place];
+                    sum[0] += (off * sigma).powi(2);
+                    sum[1] += (off * sigma / self.points[*p].deviation[channel]).powi(2);
+                }
+            }
+            let rms = |which: usize, form: usize| (sums[which][form] / f64::max(values as f64, 1.0)).sqrt();
+            ChannelGain {
+                channel,
+                values,
+                rms_before: rms(0, 0),
+                rms_after: rms(1, 0),
+                in_deviations: [rms(0, 1), rms(1, 1)],
+            }
+        };
+        (0..self.channels.len()).map(of_channel).filter(|own| own.values > 0).collect()
+    }
+}

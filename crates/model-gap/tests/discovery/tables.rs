@@ -1,0 +1,357 @@
+//! Anyone's simulator as tables: hub loads and a control over a sweep, with suspects whose effects are known.
+
+use crate::toy::noise;
+use model_gap::discovery::{Confidence, Verdict};
+use model_gap::points::{
+    Channel, Grid, Instrument, Part, Point, PointFinding, PointTable, Suspect, SuspectParameter,
+};
+
+const CHANNELS: [(&str, &str); 5] =
+    [("fz_cos_N", "N"), ("fz_sin_N", "N"), ("fx_cos_N", "N"), ("fx_sin_N", "N"), ("theta0_deg", "deg")];
+/// Harmonic of the loads.
+const HARMONIC: f64 = 4.0;
+
+/// What the simulation says at an advance ratio and a rotor speed over the nominal one.
+fn simulated(mu: f64, speed: f64) -> [f64; 5] {
+    let loads = [100.0 * (1.0 + 2.0 * mu), 60.0 * (1.0 - mu), 20.0 * (1.0 + mu * mu), -30.0 * (0.5 + mu)];
+    let [a, b, c, d] = loads.map(|load| load * speed * speed);
+    [a, b, c, d, 8.0 + 10.0 * mu * mu]
+}
+
+/// The same with an amount of something, exactly.
+fn with(name: &str, value: f64, mu: f64, speed: f64) -> [f64; 5] {
+    let mut own = simulated(mu, speed);
+    let turned = |own: [f64; 5], angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let pair = |c: f64, s: f64| (c * cos + s * sin, s * cos - c * sin);
+        let ((a, b), (c, d)) = (pair(own[0], own[1]), pair(own[2], own[3]));
+        [a, b, c, d, own[4]]
+    };
+    match name {
+        "stiffness" => {
+            let by = value - 1.0;
+            let each = [200.0 * mu, -150.0, 80.0 * mu * mu, 40.0, 2.0 * mu];
+            own.iter_mut().zip(each).for_each(|(own, each)| *own += by * each);
+        }
+        "drag" => {
+            let by = value - 1.0;
+            let each = [0.0, 5.0, 30.0 * mu, 10.0, 6.0 * mu];
+            own.iter_mut().zip(each).for_each(|(own, each)| *own += by * each);
+        }
+        "azimuth" => own = turned(own, HARMONIC * value.to_radians()),
+        // a delay in seconds turns by the harmonic times the rotor speed, 40 rad/s at the nominal one
+        "delay" => own = turned(own, HARMONIC * 40.0 * speed * value),
+        other => panic!("no suspect {other}"),
+    }
+    own
+}
+
+/// A sweep over the advance ratio at the nominal speed, `possible` points at other speeds behind.
+struct Sweep {
+    points: usize,
+    possible: Vec<(f64, f64)>,
+    /// Part of a typical load that is the deviation of a load.
+    noise: f64,
+    amount: f64,
+    form_error: f64,
+}
+
+impl Default for Sweep {
+    fn default() -> Self {
+        Self { points: 24, possible: vec![], noise: 0.01, amount: 1.0, form_error: 0.05 }
+    }
+}
+
+impl Sweep {
+    fn conditions(&self) -> Vec<(f64, f64)> {
+        let swept = (0..self.points).map(|p| (0.05 + 0.3 * p as f64 / self.points as f64, 1.0));
+        swept.chain(self.possible.iter().copied()).collect()
+    }
+
+    fn deviation(&self) -> [f64; 5] {
+        [80.0, 80.0, 30.0, 30.0, 4.0].map(|size| self.noise * size)
+    }
+
+    fn grid(&self, of: impl Fn(f64, f64) -> [f64; 5]) -> Grid {
+        self.conditions().iter().map(|&(mu, speed)| of(mu, speed).to_vec()).collect()
+    }
+
+    fn suspect(&self, name: &'static str, unit: &'static str, none: f64, amount: f64) -> Suspect {
+        let at = none + self.amount * (amount - none);
+        let back = none - self.amount * (amount - none);
+        let tables = [at, back].map(|v| (v, self.grid(|mu, speed| with(name, v, mu, speed))));
+        let wide = 20.0 * (amount - none).abs();
+        let range = (none - wide, none + wide);
+        let parameter = SuspectParameter { name: "amount", unit, none, range, tables: tables.into() };
+        let form_error = self.form_error;
+        Suspect { name, form_error, parameters: vec![parameter], ..Suspect::default() }
+    }
+
+    /// The table of measurements of `truth`, by point and channel.
+    fn table(&self, seed: u64, truth: impl Fn(f64, f64) -> [f64; 5]) -> PointTable {
+        let mut state = seed;
+        let deviation = self.deviation();
+        let mut point = |(p, &(mu, speed)): (usize, &(f64, f64))| {
+            let read = truth(mu, speed);
+            let measured = read.iter().zip(deviation).map(|(v, s)| v + s * noise(&mut state));
+            let measured: Vec<f64> = measured.collect();
+            let is_measured = p < self.points;
+            Point {
+                id: format!("{}", p + 1),
+                group: p,
+                conditions: vec![mu, speed],
+                measured: measured.into_iter().map(|v| is_measured.then_some(v)).collect(),
+                deviation: deviation.to_vec(),
+            }
+        };
+        let parts =
+            [Part::CosineOf(1), Part::SineOf(0), Part::CosineOf(3), Part::SineOf(2), Part::Scalar];
+        let channel = |(c, part): (usize, Part)| Channel {
+            name: CHANNELS[c].0.into(),
+            unit: CHANNELS[c].1.into(),
+            instrument: c / 2,
+            part,
+        };
+        let instrument = |name: &str| Instrument { name: name.into(), gain: 0.002, zero: 0.0 };
+        PointTable {
+            points: self.conditions().iter().enumerate().map(&mut point).collect(),
+            channels: parts.into_iter().enumerate().map(channel).collect(),
+            instruments: ["fz_N", "fx_N", "theta0_deg"].map(instrument).into(),
+            conditions: vec!["mu".into(), "speed".into()],
+            predicted: self.grid(simulated),
+            suspects: vec![
+                self.suspect("stiffness", "1", 1.0, 1.05),
+                self.suspect("drag", "1", 1.0, 1.2),
+                self.suspect("azimuth", "deg", 0.0, 1.0),
+            ],
+            knows_deviations: true,
+            ..PointTable::default()
+        }
+    }
+}
+
+fn names(found: &PointFinding) -> Vec<&'static str> {
+    found.finding.causes.iter().map(|own| found.candidates[own.candidate].id).collect()
+}
+
+fn is_confident(found: &PointFinding) -> bool {
+    found.finding.verdict == Verdict::Named && found.finding.confidence == Confidence::Confident
+}
+
+#[test]
+fn noise_alone_shows_nothing_and_says_what_it_would_have_shown() {
+    let sweep = Sweep::default();
+    let mut shown = 0;
+    let mut sure = 0;
+    for seed in 0..60 {
+        let found = sweep.table(1 + 7 * seed, simulated).find().unwrap();
+        shown += usize::from(found.finding.verdict != Verdict::NothingMissing);
+        sure += usize::from(found.finding.confidence == Confidence::Confident);
+        for limit in found.finding.limits.iter().flatten() {
+            assert!((0.01..1.0).contains(limit), "{limit}");
+        }
+    }
+    assert!(shown <= 2, "{shown} of 60");
+    assert!(sure >= 50, "{sure} of 60");
+}
+
+#[test]
+fn what_was_planted_is_named_with_its_amount() {
+    let sweep = Sweep::default();
+    for (name, value) in [("stiffness", 0.93), ("stiffness", 1.06), ("drag", 1.4), ("azimuth", -2.0)] {
+        let mut covered = 0;
+        for seed in 0..20 {
+            let table = sweep.table(3 + 11 * seed, |mu, speed| with(name, value, mu, speed));
+            let found = table.find().unwrap();
+            assert!(is_confident(&found), "{name} {value}, {seed}: {:?}", found.finding.reasons);
+            assert_eq!(names(&found), [name], "{seed}");
+            let own = &found.finding.causes[0].parameters[0];
+            covered += usize::from(own.ci95[0] <= value && value <= own.ci95[1]);
+            assert!((own.value - value).abs() < 0.2 * (value - 1.0_f64.min(value.abs())).abs().max(0.05));
+            // a channel that the cause moves is better met on points not seen, in its own unit
+            let better = found.gains.iter().filter(|g| g.rms_after < 0.9 * g.rms_before).count();
+            assert!(better >= 1, "{:?}", found.gains);
+        }
+        assert!(covered >= 17, "{name} {value}: {covered} of 20 intervals");
+    }
+}
+
+/// A point far off, or two neighbours, is no cause.
+#[test]
+fn a_point_far_off_has_no_name() {
+    let sweep = Sweep { points: 40, ..Sweep::default() };
+    for seed in 0..60 {
+        let mut table = sweep.table(5 + 13 * seed, simulated);
+        let at = 7 + (seed as usize) % 20;
+        let off = sweep.deviation()[1] * 8.0;
+        for p in [at, at + 1].into_iter().take(1 + (seed as usize) % 2) {
+            table.points[p].measured[1] = table.points[p].measured[1].map(|v| v + off);
+        }
+        let found = table.find().unwrap();
+        assert!(!is_confident(&found), "{seed}: {:?}", names(&found));
+    }
+}
+
+/// Errors that are smooth over the sweep, one of each channel, are no cause: at most one name of 60, and it is not sure.
+#[test]
+fn a_smooth_error_of_every_channel_has_no_name() {
+    let sweep = Sweep::default();
+    let mut named = 0;
+    for seed in 0..60 {
+        let mut state = 17 + 19 * seed;
+        let waves: Vec<(f64, f64)> = (0..5).map(|_| (noise(&mut state), noise(&mut state))).collect();
+        let size = sweep.deviation();
+        let truth = |mu: f64, speed: f64| {
+            let mut own = simulated(mu, speed);
+            for ((own, (a, b)), size) in own.iter_mut().zip(&waves).zip(size) {
+                *own += size * (a + 6.0 * b * (mu - 0.2));
+            }
+            own
+        };
+        let found = sweep.table(23 + 29 * seed, truth).find().unwrap();
+        assert!(!is_confident(&found), "{seed}: {:?}", names(&found));
+        let has_name = found.finding.verdict == Verdict::Named;
+        named += usize::from(has_name);
+    }
+    assert!(named <= 1, "{named} of 60");
+}
+
+/// Turning the reference of azimuth, measured and simulated alike, changes nothing; nor does the unit of a channel, a
+/// further channel that nothing moves, the order of the points, or the size of the amounts that effects were computed with.
+#[test]
+fn the_verdict_does_not_depend_on_how_the_table_is_written() {
+    let sweep = Sweep::default();
+    let truth = |mu: f64, speed: f64| with("stiffness", 1.04, mu, speed);
+    let plain = sweep.table(9, truth);
+    let expected = plain.find().unwrap();
+    assert!(is_confident(&expected));
+    let value = |found: &PointFinding| found.finding.causes[0].parameters[0].value;
+    let interval = expected.finding.causes[0].parameters[0].ci95;
+    let tenth = 0.1 * (interval[1] - interval[0]);
+    let mut other: Vec<(&str, PointTable)> = Vec::new();
+    let mut turned = plain.clone();
+    let turn = |row: &mut Vec<f64>| {
+        let (sin, cos) = 1.1_f64.sin_cos();
+        for (a, b) in [(0, 1), (2, 3)] {
+            let (c, s) = (row[a], row[b]);
+            (row[a], row[b]) = (c * cos + s * sin, s * cos - c * sin);
+        }
+    };
+    each_row(&mut turned, turn);
+    other.push(("azimuth turned", turned));
+    let mut scaled = plain.clone();
+    each_row(&mut scaled, |row| row[1] *= 1000.0);
+    scaled.points.iter_mut().for_each(|point| point.deviation[1] *= 1000.0);
+    // a gain is shared by the two of a harmonic in one unit: the unit of both changes
+    each_row(&mut scaled, |row| row[0] *= 1000.0);
+    scaled.points.iter_mut().for_each(|point| point.deviation[0] *= 1000.0);
+    other.push(("another unit", scaled));
+    let mut reversed = plain.clone();
+    reversed.points.reverse();
+    every_grid(&mut reversed, |grid| grid.reverse());
+    other.push(("reverse order", reversed));
+    for amount in [0.3, 3.0] {
+        let own = Sweep { amount, ..Sweep::default() };
+        other.push(("other amounts", own.table(9, truth)));
+    }
+    for (what, table) in other {
+        let found = table.find().unwrap();
+        assert!(is_confident(&found), "{what}: {:?}", found.finding.reasons);
+        assert_eq!(names(&found), names(&expected), "{what}");
+        assert!((value(&found) - value(&expected)).abs() < tenth, "{what}");
+    }
+}
+
+fn every_grid(table: &mut PointTable, change: impl Fn(&mut Grid)) {
+    change(&mut table.predicted);
+    for suspect in &mut table.suspects {
+        for parameter in &mut suspect.parameters {
+            parameter.tables.iter_mut().for_each(|own| change(&mut own.1));
+        }
+    }
+}
+
+/// Changes a row of every grid, and of what was measured in full.
+fn each_row(table: &mut PointTable, change: impl Fn(&mut Vec<f64>)) {
+    every_grid(table, |grid| grid.iter_mut().for_each(&change));
+    for point in &mut table.points {
+        let mut row: Vec<f64> = point.measured.iter().flatten().copied().collect();
+        change(&mut row);
+        point.measured = row.into_iter().map(Some).collect();
+    }
+}
+
+/// Delay and azimuth are one thing at one rotor speed: both are said, and points at another speed are asked for.
+#[test]
+fn what_these_points_cannot_tell_apart_is_a_set_and_other_points_are_asked_for() {
+    let possible = vec![(0.2, 1.0), (0.3, 1.0), (0.2, 0.8), (0.2, 1.02)];
+    let sweep = Sweep { possible, form_error: 0.005, ..Sweep::default() };
+    let mut table = sweep.table(31, |mu, speed| with("azimuth", 5.0, mu, speed));
+    table.suspects.push(sweep.suspect("delay", "s", 0.0, 0.0005));
+    let found = table.find().unwrap();
+    assert_eq!(found.finding.verdict, Verdict::Ambiguous, "{:?}", found.finding.reasons);
+    let cause = &found.finding.causes[0];
+    let mut set = vec![found.candidates[cause.candidate].id];
+    set.extend(cause.alternatives.iter().map(|own| found.candidates[own.candidate].id));
+    set.sort_unstable();
+    assert_eq!(set, ["azimuth", "delay"]);
+    let next = found.next.unwrap();
+    assert_eq!((next.points[0], next.told_apart), (26, 1.0), "{next:?}");
+    // measured there, the truth is told
+    table.points[26].measured = with("azimuth", 5.0, 0.2, 0.8).map(Some).into();
+    let found = table.find().unwrap();
+    assert_eq!(names(&found), ["azimuth"], "{:?}", found.finding.reasons);
+    assert!(is_confident(&found), "{:?}", found.finding.reasons);
+}
+
+#[test]
+fn what_another_model_thought_as_good_explains_is_no_discovery() {
+    let sweep = Sweep::default();
+    let truth = |mu: f64, speed: f64| with("stiffness", 1.04, mu, speed);
+    let mut table = sweep.table(37, truth);
+    assert!(is_confident(&table.find().unwrap()));
+    table.alternatives = vec![sweep.grid(|mu, speed| with("stiffness", 1.05, mu, speed))];
+    let found = table.find().unwrap();
+    assert!(names(&found).is_empty(), "{:?}", names(&found));
+    // the same of an input that is uncertain by as much
+    table.uncertain = std::mem::take(&mut table.alternatives);
+    assert!(names(&table.find().unwrap()).is_empty());
+}
+
+#[test]
+fn too_few_values_choose_nothing_and_unknown_noise_is_never_sure() {
+    let sweep = Sweep { points: 4, ..Sweep::default() };
+    let truth = |mu: f64, speed: f64| with("stiffness", 1.1, mu, speed);
+    let mut few = sweep.table(41, truth);
+    for k in 0..25_u32 {
+        let amount = 1.0 + 0.05 * f64::from(k + 1);
+        few.suspects.push(sweep.suspect("stiffness", "1", 1.0, amount));
+    }
+    let found = few.find().unwrap();
+    assert!(names(&found).is_empty());
+    assert!(found.candidates[0].blocked.as_ref().unwrap().contains("20 values"));
+    let mut unsure = Sweep::default().table(41, truth);
+    unsure.knows_deviations = false;
+    assert!(!is_confident(&unsure.find().unwrap()));
+}
+
+#[test]
+fn blank_cells_are_left_out_and_bad_tables_are_refused() {
+    let sweep = Sweep::default();
+    let mut table = sweep.table(43, |mu, speed| with("drag", 1.4, mu, speed));
+    for point in table.points.iter_mut().step_by(3) {
+        point.measured[1] = None;
+    }
+    table.points[5].measured = vec![None; 5];
+    let found = table.find().unwrap();
+    assert_eq!((names(&found), found.measured.len()), (vec!["drag"], 23));
+    let refused = |change: &dyn Fn(&mut PointTable)| {
+        let mut bad = table.clone();
+        change(&mut bad);
+        bad.find().unwrap_err().to_string()
+    };
+    assert!(refused(&|t| t.points[3].deviation[2] = 0.0).contains("standard deviation"));
+    assert!(refused(&|t| t.predicted[3][2] = f64::NAN).contains("prediction"));
+    assert!(refused(&|t| { t.predicted.pop(); }).contains("expected 24"));
+    assert!(refused(&|t| t.points.iter_mut().for_each(|p| p.measured = vec![None; 5])).contains("measured values"));
+}
