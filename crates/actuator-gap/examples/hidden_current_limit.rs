@@ -7,8 +7,9 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
-use actuator_gap::{Findings, Question, Record, Records, diagnose};
+use actuator_gap::{Question, Record, Records, diagnose};
 use measured_data::Accuracy;
+use model_gap::Findings;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, CurrentLimit, Drive, PlayMap,
     PreisachError, PreisachGrid, StaticPreisach, VoltageRange,

@@ -13,7 +13,7 @@ use crate::simulator::{BenchSimulator, CALIBRATIONS, ChannelKind, Setting, avera
 use crate::surrogate;
 use measured_data::Accuracy;
 use model_gap::discovery::{Discovery, Finding, Rival, Settings, Signal, Verdict};
-use model_gap::{Candidate, EnergySplit, GapError};
+use model_gap::{Candidate, EnergySplit, GapError, places};
 use rotor_base::variance;
 
 /// A diagnosis with everything it rests on.
@@ -86,8 +86,6 @@ pub struct RunEnergy {
 
 /// Motion over that expected, beyond which a unit is more likely wrong than a gain.
 const LIKELY_SCALE: [f64; 2] = [0.4, 2.5];
-/// Share of its threshold from which on a cause may be there and hidden.
-const MAY_BE_HIDDEN: f64 = 0.5;
 
 impl Diagnosis {
     /// Reference runs that the base model was fitted to; the measured ones where there are none.
@@ -113,25 +111,6 @@ impl Diagnosis {
         }
         let id = |rival: &Rival| self.candidates[rival.candidate].id;
         self.finding.causes.iter().map(|found| found.rivals.iter().map(id).collect()).collect()
-    }
-
-    /// Causes that these data could not have shown at usual strength; and, where nothing is named, those
-    /// that would explain a good part of the misfit and stay within what surrogates reach.
-    pub fn not_observable(&self) -> Vec<String> {
-        let unnamed = self.finding.causes.is_empty();
-        self.candidates
-            .iter()
-            .zip(&self.finding.screen)
-            // what the data refute they have shown; what has no name is not asked for
-            .filter(|(candidate, _)| candidate.refuted.is_none() && candidate.decoy.is_none())
-            .filter(|(candidate, screened)| {
-                let hidden = MAY_BE_HIDDEN * screened.threshold..screened.threshold;
-                candidate.blocked.is_some()
-                    || screened.weak_signal < screened.threshold
-                    || (unnamed && hidden.contains(&screened.score))
-            })
-            .map(|(candidate, _)| candidate.id.to_owned())
-            .collect()
     }
 }
 
@@ -302,24 +281,13 @@ fn outputs(simulator: &BenchSimulator<'_>) -> Vec<OutputTrace> {
         .collect()
 }
 
-/// Places of causes asked for by name.
-pub(crate) fn places(candidates: &[Candidate], only: &[String]) -> Result<Vec<usize>, GapError> {
-    let place = |id: &String| {
-        candidates.iter().position(|c| c.id == id.as_str()).ok_or_else(|| {
-            let known: Vec<&str> = candidates.iter().map(|c| c.id).collect();
-            let message = format!("not in the library: {}", known.join(", "));
-            GapError::Simulation { what: id.clone(), message }
-        })
-    };
-    only.iter().map(place).collect()
-}
-
 /// Blocks every candidate that is not asked for; the places of those that are.
 fn restrict(candidates: &mut [Candidate], only: &[String]) -> Result<Option<Vec<usize>>, GapError> {
     if only.is_empty() {
         return Ok(None);
     }
-    let places = places(candidates, only)?;
+    let ids: Vec<&str> = candidates.iter().map(|own| own.id).collect();
+    let places = places(&ids, only)?;
     for (c, candidate) in candidates.iter_mut().enumerate() {
         if !places.contains(&c) {
             candidate.blocked = Some("not asked for".into());
@@ -367,9 +335,9 @@ impl RunEnergy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::findings::Findings;
     use measured_data::{DisplacementAccuracy, VoltageAccuracy};
     use model_gap::Class;
+    use model_gap::Findings;
     use model_gap::discovery::{Confidence, Reason};
     use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
 

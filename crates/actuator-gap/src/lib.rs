@@ -38,9 +38,6 @@ mod surrogate;
 pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 pub use diagnosis::{Diagnosis, RunEnergy, diagnose};
 pub use error::DiagnosisError;
-pub use findings::{
-    BandValue, ComparedValue, Findings, GainValue, GivenModelValue, ParameterValue, ScreenValue,
-};
 pub use next::Proposal;
 pub use plan::{Plan, Planned, PlannedCause, Rehearsal, SIZES, plan, usual_runs};
 pub use question::{Question, Stage, StructureStore};

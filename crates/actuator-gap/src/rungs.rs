@@ -5,14 +5,13 @@ use crate::causes::{self, Design};
 use crate::diagnosis::{Diagnosis, Floors, diagnose, search};
 use crate::error::DiagnosisError;
 use crate::extended::{USUAL_DEG_PER_UM, law_of_file};
-use crate::findings::{Findings, names};
 use crate::question::{Question, Stage, StructureStore};
 use crate::record::{Record, Records};
 use crate::sessions::{error_percent, range_of};
 use crate::simulator::{BenchSimulator, Setting};
 use measured_data::Accuracy;
-use model_gap::GapError;
 use model_gap::discovery::{Confidence, Settings, Verdict};
+use model_gap::{Findings, GapError, names};
 use preisach_dyn::ActuatorModel;
 
 /// Runs whose input is no faster than this, rms rate over rms amplitude, are slow, Hz.

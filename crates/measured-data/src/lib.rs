@@ -17,8 +17,9 @@ mod tables;
 
 pub use dataset::{
     Accuracy, BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet,
-    DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, ReversalCurve, Run, RunFile,
-    RunRole, Sensor, VoltageAccuracy, read_bench, read_curves, read_dataset, read_loops,
+    DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, PointColumn, PointData,
+    ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor, VoltageAccuracy, read_bench,
+    read_curves, read_dataset, read_loops,
 };
 pub use error::DataError;
 pub use files::{

@@ -1,5 +1,6 @@
 //! What could be missing: causes as values.
 
+use crate::GapError;
 use serde::{Deserialize, Serialize};
 
 /// How a parameter is searched.
@@ -229,4 +230,18 @@ pub struct Effect {
     pub candidate: usize,
     /// Values of its parameters.
     pub values: Vec<f64>,
+}
+
+/// Places of causes asked for by name.
+///
+/// # Errors
+/// [`GapError::Simulation`] of a name that is not among them.
+pub fn places(ids: &[&str], only: &[String]) -> Result<Vec<usize>, GapError> {
+    let place = |asked: &String| {
+        ids.iter().position(|own| own == asked).ok_or_else(|| GapError::Simulation {
+            what: asked.clone(),
+            message: format!("not in the library: {}", ids.join(", ")),
+        })
+    };
+    only.iter().map(place).collect()
 }

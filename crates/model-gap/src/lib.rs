@@ -39,6 +39,7 @@ mod cause;
 pub mod discovery;
 mod energy;
 mod error;
+mod findings;
 mod harmonics;
 mod in_common;
 mod memo;
@@ -51,9 +52,13 @@ mod sine;
 mod spectrum;
 mod trace;
 
-pub use cause::{Candidate, Class, Effect, Parameter, Scale};
+pub use cause::{Candidate, Class, Effect, Parameter, Scale, places};
 pub use energy::EnergySplit;
 pub use error::GapError;
+pub use findings::{
+    BandValue, ChannelGainValue, ComparedValue, Findings, GainValue, GivenModelValue,
+    ParameterValue, ScreenValue, Told, names,
+};
 pub use harmonics::{FirstHarmonicError, HarmonicFit};
 pub use in_common::{InCommon, in_common};
 pub use memo::Memo;

@@ -6,9 +6,8 @@ mod usual;
 pub use usual::usual_runs;
 
 use crate::causes::LIBRARY;
-use crate::diagnosis::{Diagnosis, diagnose, places};
+use crate::diagnosis::{Diagnosis, diagnose};
 use crate::error::DiagnosisError;
-use crate::findings::Findings;
 use crate::numbers::less;
 use crate::question::{Question, StructureStore};
 use crate::record::{Record, Records};
@@ -16,7 +15,7 @@ use crate::sessions::simulated_um;
 use crate::simulator::{BenchSimulator, Setting};
 use measured_data::Accuracy;
 use model_gap::discovery::{Confidence, Verdict};
-use model_gap::{Class, Effect, SplitMix};
+use model_gap::{Class, Effect, Findings, SplitMix, places};
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -99,7 +98,8 @@ pub fn plan(
     told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Plan, DiagnosisError> {
     let bench = Rehearsed::new(model, planned, store)?;
-    let mut named = places(&bench.null.candidates[..LIBRARY.len()], planned.only)?;
+    let ids: Vec<&str> = bench.null.candidates[..LIBRARY.len()].iter().map(|own| own.id).collect();
+    let mut named = places(&ids, planned.only)?;
     if named.is_empty() {
         named = (0..LIBRARY.len()).collect();
     }

@@ -7,6 +7,7 @@ mod curves;
 mod file;
 mod loops;
 mod open;
+mod points;
 mod run;
 
 pub use accuracy::{Accuracy, DisplacementAccuracy, VoltageAccuracy};
@@ -19,4 +20,5 @@ pub use file::{
 };
 pub use loops::{LoopData, read_loops};
 pub use open::DATASET;
+pub use points::{PointColumn, PointData, Scatter};
 pub use run::Run;

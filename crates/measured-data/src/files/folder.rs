@@ -107,6 +107,29 @@ impl Folder {
         }
     }
 
+    /// Names of the files of this folder, in alphabetical order; none of a folder that cannot be read.
+    pub fn files(&self) -> Vec<String> {
+        let mut names: Vec<String> = match self {
+            Self::Disk(folder) => {
+                let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+                let files = entries.filter(|entry| entry.path().is_file());
+                files.filter_map(|entry| entry.file_name().into_string().ok()).collect()
+            }
+            Self::Embedded(folder) => {
+                let own = folder.file("");
+                let inside = |(path, _): &&(&str, &[u8])| {
+                    path.strip_prefix(&own)
+                        .is_some_and(|rest| !rest.trim_matches('/').contains('/'))
+                };
+                let name =
+                    |(path, _): &(&str, &[u8])| path[own.len()..].trim_matches('/').to_owned();
+                folder.files.iter().filter(inside).map(name).collect()
+            }
+        };
+        names.sort();
+        names
+    }
+
     /// Whether a file exists in this folder.
     pub fn contains(&self, file: &str) -> bool {
         match self {

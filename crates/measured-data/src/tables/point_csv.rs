@@ -43,8 +43,13 @@ impl PointCsv {
             }
         }
         let is_text: Vec<bool> = header.iter().map(|own| texts.contains(&own.0.as_str())).collect();
-        let mut own =
-            Self { header, file: source.name.clone(), numbers: vec![], texts: vec![], lines: vec![] };
+        let mut own = Self {
+            header,
+            file: source.name.clone(),
+            numbers: vec![],
+            texts: vec![],
+            lines: vec![],
+        };
         let mut faults = Listing::default();
         let Self { header, file, numbers, texts, lines } = &mut own;
         let read = table.rows(&mut problems, |cells, line, problems| {

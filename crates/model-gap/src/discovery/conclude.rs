@@ -5,8 +5,8 @@ use super::fit::Fitted;
 use super::gain::gain;
 use super::judge::drift;
 use super::thresholds::{
-    DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE,
-    LEAST_SHARE_OF_RUNS, STRAINED, STRAINED_BESIDE, STRONG, WRONG_NAME, least_effect, limit,
+    DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRAINED,
+    STRAINED_BESIDE, STRONG, WRONG_NAME, least_effect, limit,
 };
 use super::{
     Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator, StandsOut,

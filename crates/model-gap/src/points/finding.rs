@@ -116,7 +116,9 @@ impl PointTable {
                     sum[1] += (off * sigma / self.points[*p].deviation[channel]).powi(2);
                 }
             }
-            let rms = |which: usize, form: usize| (sums[which][form] / f64::max(values as f64, 1.0)).sqrt();
+            let rms = |which: usize, form: usize| {
+                (sums[which][form] / f64::max(values as f64, 1.0)).sqrt()
+            };
             ChannelGain {
                 channel,
                 values,

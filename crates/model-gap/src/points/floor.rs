@@ -45,7 +45,11 @@ pub(super) fn model_error(table: &PointTable) -> Result<Vec<f64>, GapError> {
             (squares[sine], counts[sine]) = both;
         }
     }
-    Ok(squares.iter().zip(&counts).map(|(sum, count)| (sum / f64::max(*count, 1.0)).sqrt()).collect())
+    Ok(squares
+        .iter()
+        .zip(&counts)
+        .map(|(sum, count)| (sum / f64::max(*count, 1.0)).sqrt())
+        .collect())
 }
 
 /// A vector less what columns explain of it, each with a factor of standard deviation 1.
@@ -53,8 +57,8 @@ fn beyond(vector: &[f64], columns: &[&Vec<f64>]) -> Result<Vec<f64>, GapError> {
     let own = DVector::from_column_slice(vector);
     let matrix = DMatrix::from_fn(vector.len(), columns.len(), |i, k| columns[k][i]);
     let normal = matrix.tr_mul(&matrix) + DMatrix::identity(columns.len(), columns.len());
-    let solver = Cholesky::new(normal)
-        .ok_or(GapError::NotPositiveDefinite { columns: columns.len() })?;
+    let solver =
+        Cholesky::new(normal).ok_or(GapError::NotPositiveDefinite { columns: columns.len() })?;
     let taken = &matrix * solver.solve(&matrix.tr_mul(&own));
     Ok((own - taken).as_slice().to_vec())
 }
@@ -104,7 +108,8 @@ impl Shape<'_> {
 
 /// The channels of every instrument.
 fn by_instrument(table: &PointTable) -> Vec<Vec<usize>> {
-    let of = |i: usize| (0..table.channels.len()).filter(move |&c| table.channels[c].instrument == i);
+    let of =
+        |i: usize| (0..table.channels.len()).filter(move |&c| table.channels[c].instrument == i);
     (0..table.instruments.len()).map(|i| of(i).collect()).collect()
 }
 
@@ -195,7 +200,8 @@ impl Floor {
         let table = tables.table;
         let instruments = by_instrument(table);
         let of_channels = (0..table.channels.len()).map(Shape::Zero);
-        let of_instruments = instruments.iter().flat_map(|own| [Shape::Gain(own), Shape::Turned(own)]);
+        let of_instruments =
+            instruments.iter().flat_map(|own| [Shape::Gain(own), Shape::Turned(own)]);
         let shapes: Vec<Shape<'_>> = of_channels.chain(of_instruments).collect();
         let varied = varied(table);
         let mut all = Vec::new();

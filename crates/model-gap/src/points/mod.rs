@@ -11,10 +11,12 @@
 
 mod finding;
 mod floor;
+mod names;
 mod next;
 mod predicted;
 mod table;
 
 pub use finding::{ChannelGain, PointFinding};
+pub use names::channels_of;
 pub use next::NextPoints;
 pub use table::{Channel, Grid, Instrument, Part, Point, PointTable, Suspect, SuspectParameter};

@@ -34,7 +34,8 @@ impl Told {
     /// Of separations; `forms` are the errors of form of the rivals.
     fn of(found: &Separation, drop: f64, forms: &[f64]) -> Self {
         let count = found.energy.len();
-        let pairs = (0..count).flat_map(|a| (0..count).filter(move |b| *b != a).map(move |b| (a, b)));
+        let pairs =
+            (0..count).flat_map(|a| (0..count).filter(move |b| *b != a).map(move |b| (a, b)));
         let ratios: Vec<f64> = pairs
             .map(|(a, b)| {
                 let asked = SURELY * needed_between(drop + found.energy[a], [forms[a], forms[b]]);
@@ -64,8 +65,7 @@ pub(super) fn next_points(
     let open = finding.causes.iter().max_by_key(|found| found.rivals.len());
     let Some(open) = open.filter(|found| found.rivals.len() > 1) else { return Ok(None) };
     let all = 0..table.points.len();
-    let possible: Vec<usize> =
-        all.clone().filter(|&p| !table.points[p].is_measured()).collect();
+    let possible: Vec<usize> = all.clone().filter(|&p| !table.points[p].is_measured()).collect();
     let mut left: Vec<usize> = if possible.is_empty() { all.collect() } else { possible };
     let mut chosen: Vec<usize> = Vec::new();
     let mut best: Option<Told> = None;

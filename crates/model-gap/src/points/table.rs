@@ -204,9 +204,7 @@ fn length(what: &str, found: usize, expected: usize) -> Result<(), GapError> {
 
 fn finite(what: &str, row: &[f64]) -> Result<(), GapError> {
     match row.iter().position(|value| !value.is_finite()) {
-        Some(index) => {
-            Err(GapError::NotFinite { what: what.to_owned(), index, value: row[index] })
-        }
+        Some(index) => Err(GapError::NotFinite { what: what.to_owned(), index, value: row[index] }),
         None => Ok(()),
     }
 }

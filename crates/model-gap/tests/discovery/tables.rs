@@ -6,14 +6,20 @@ use model_gap::points::{
     Channel, Grid, Instrument, Part, Point, PointFinding, PointTable, Suspect, SuspectParameter,
 };
 
-const CHANNELS: [(&str, &str); 5] =
-    [("fz_cos_N", "N"), ("fz_sin_N", "N"), ("fx_cos_N", "N"), ("fx_sin_N", "N"), ("theta0_deg", "deg")];
+const CHANNELS: [(&str, &str); 5] = [
+    ("fz_cos_N", "N"),
+    ("fz_sin_N", "N"),
+    ("fx_cos_N", "N"),
+    ("fx_sin_N", "N"),
+    ("theta0_deg", "deg"),
+];
 /// Harmonic of the loads.
 const HARMONIC: f64 = 4.0;
 
 /// What the simulation says at an advance ratio and a rotor speed over the nominal one.
 fn simulated(mu: f64, speed: f64) -> [f64; 5] {
-    let loads = [100.0 * (1.0 + 2.0 * mu), 60.0 * (1.0 - mu), 20.0 * (1.0 + mu * mu), -30.0 * (0.5 + mu)];
+    let loads =
+        [100.0 * (1.0 + 2.0 * mu), 60.0 * (1.0 - mu), 20.0 * (1.0 + mu * mu), -30.0 * (0.5 + mu)];
     let [a, b, c, d] = loads.map(|load| load * speed * speed);
     [a, b, c, d, 8.0 + 10.0 * mu * mu]
 }
@@ -82,7 +88,8 @@ impl Sweep {
         let tables = [at, back].map(|v| (v, self.grid(|mu, speed| with(name, v, mu, speed))));
         let wide = 20.0 * (amount - none).abs();
         let range = (none - wide, none + wide);
-        let parameter = SuspectParameter { name: "amount", unit, none, range, tables: tables.into() };
+        let parameter =
+            SuspectParameter { name: "amount", unit, none, range, tables: tables.into() };
         let form_error = self.form_error;
         Suspect { name, form_error, parameters: vec![parameter], ..Suspect::default() }
     }
@@ -158,7 +165,9 @@ fn noise_alone_shows_nothing_and_says_what_it_would_have_shown() {
 #[test]
 fn what_was_planted_is_named_with_its_amount() {
     let sweep = Sweep::default();
-    for (name, value) in [("stiffness", 0.93), ("stiffness", 1.06), ("drag", 1.4), ("azimuth", -2.0)] {
+    for (name, value) in
+        [("stiffness", 0.93), ("stiffness", 1.06), ("drag", 1.4), ("azimuth", -2.0)]
+    {
         let mut covered = 0;
         for seed in 0..20 {
             let table = sweep.table(3 + 11 * seed, |mu, speed| with(name, value, mu, speed));
@@ -167,7 +176,10 @@ fn what_was_planted_is_named_with_its_amount() {
             assert_eq!(names(&found), [name], "{seed}");
             let own = &found.finding.causes[0].parameters[0];
             covered += usize::from(own.ci95[0] <= value && value <= own.ci95[1]);
-            assert!((own.value - value).abs() < 0.2 * (value - 1.0_f64.min(value.abs())).abs().max(0.05));
+            assert!(
+                (own.value - value).abs()
+                    < 0.2 * (value - 1.0_f64.min(value.abs())).abs().max(0.05)
+            );
             // a channel that the cause moves is better met on points not seen, in its own unit
             let better = found.gains.iter().filter(|g| g.rms_after < 0.9 * g.rms_before).count();
             assert!(better >= 1, "{:?}", found.gains);
@@ -199,7 +211,8 @@ fn a_smooth_error_of_every_channel_has_no_name() {
     let mut named = 0;
     for seed in 0..60 {
         let mut state = 17 + 19 * seed;
-        let waves: Vec<(f64, f64)> = (0..5).map(|_| (noise(&mut state), noise(&mut state))).collect();
+        let waves: Vec<(f64, f64)> =
+            (0..5).map(|_| (noise(&mut state), noise(&mut state))).collect();
         let size = sweep.deviation();
         let truth = |mu: f64, speed: f64| {
             let mut own = simulated(mu, speed);
@@ -352,6 +365,14 @@ fn blank_cells_are_left_out_and_bad_tables_are_refused() {
     };
     assert!(refused(&|t| t.points[3].deviation[2] = 0.0).contains("standard deviation"));
     assert!(refused(&|t| t.predicted[3][2] = f64::NAN).contains("prediction"));
-    assert!(refused(&|t| { t.predicted.pop(); }).contains("expected 24"));
-    assert!(refused(&|t| t.points.iter_mut().for_each(|p| p.measured = vec![None; 5])).contains("measured values"));
+    assert!(
+        refused(&|t| {
+            t.predicted.pop();
+        })
+        .contains("expected 24")
+    );
+    assert!(
+        refused(&|t| t.points.iter_mut().for_each(|p| p.measured = vec![None; 5]))
+            .contains("measured values")
+    );
 }

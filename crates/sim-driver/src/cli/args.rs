@@ -263,13 +263,13 @@ fn range(text: &str) -> Result<(f64, f64), String> {
 #[derive(Debug, Clone, Args)]
 pub struct DiagnoseArgs {
     /// Actuator file, or a case with its actuator: the simulation that is asked about.
-    #[arg(value_name = "ACTUATOR_OR_CASE.ron", required_unless_present = "plan")]
+    #[arg(value_name = "ACTUATOR_OR_CASE.ron", required_unless_present_any = ["plan", "table"])]
     pub model: Option<PathBuf>,
     /// Folder with dataset.ron and the measured records; of several like specimens, one folder each.
-    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
+    #[arg(long, value_name = "DIR", required_unless_present_any = ["plan", "table"])]
     pub data: Vec<PathBuf>,
     /// Folder to write to: findings, extended actuator, residuals; of several specimens in a folder each.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "plan")]
+    #[arg(short, long, value_name = "DIR", required_unless_present_any = ["plan", "table"])]
     pub output: Option<PathBuf>,
     /// Take these causes for true and fit them, nothing refused; with a plan, ask about these alone.
     #[arg(long, value_name = "CAUSES", value_delimiter = ',')]
@@ -277,6 +277,10 @@ pub struct DiagnoseArgs {
     /// Before anything is measured: which causes runs would tell apart, and at which size, on this actuator.
     #[arg(long, value_name = "ACTUATOR_OR_CASE.ron", conflicts_with_all = ["model", "data", "reference"])]
     pub plan: Option<PathBuf>,
+    /// Anyone's simulator: a folder with measured.csv, predicted.csv, what is predicted with some of each suspect
+    /// (`effect_NAME.csv`), and their amounts (table.ron).
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["model", "data", "reference", "plan"])]
+    pub table: Option<PathBuf>,
     /// Runs of the plan: commands and channels of a folder with dataset.ron; the usual ones if left out.
     #[arg(long, value_name = "DIR", requires = "plan")]
     pub runs: Option<PathBuf>,

@@ -6,8 +6,9 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, Question, Record, Records,
-    Specimens, Stage, Story, climb, extended, plan, usual_runs,
+    Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis, PointStory,
+    Question, Record, Records, Specimens, Stage, Story, TableData, climb, extended, plan,
+    read_table, usual_runs,
 };
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
@@ -25,6 +26,9 @@ const EXTENDED_CASE_FILE: &str = "extended_case.ron";
 
 pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let form = args.records.format.form();
+    if let Some(table) = &args.table {
+        return tabled(args, table);
+    }
     let (Some(model), Some(output)) = (&args.model, &args.output) else {
         return planned(args);
     };
@@ -45,6 +49,19 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let specimens = Specimens::of(&found);
     write_atomic(&output.join("specimens.json"), json(&specimens)?.as_bytes())?;
     print(&specimens.render(form)?)
+}
+
+/// Says what anyone's simulator lacks, from tables of it.
+fn tabled(args: &DiagnoseArgs, folder: &Path) -> Result<(), SimError> {
+    let form = args.records.format.form();
+    let read = read_table(&Folder::Disk(folder.to_path_buf()))?;
+    warn(&read.warnings, form);
+    let TableData { title, folder, table, .. } = read;
+    let found = PointDiagnosis::of((title, &folder), "EffectTable", table, &args.only)?;
+    if let Some(output) = &args.output {
+        write_texts(output, found.files()?)?;
+    }
+    print(&PointStory::of(&found).render(form)?)
 }
 
 /// Says what runs would show of an actuator, before they are measured.

@@ -3,15 +3,18 @@
 mod cache;
 mod ladder;
 mod plan_text;
+mod points;
 mod specimens;
 mod story;
 
 pub use actuator_gap::{
-    Diagnosis, Findings, Plan, Planned, Proposal, Question, Record, Records, Stage, usual_runs,
+    Diagnosis, Plan, Planned, Proposal, Question, Record, Records, Stage, usual_runs,
 };
 pub use cache::FolderStore;
 pub use ladder::{Climb, Ladder, Rung, climb};
+pub use model_gap::Findings;
 pub use plan_text::PlanText;
+pub use points::{PointDiagnosis, PointStory, TableData, read_table};
 pub use specimens::{MissingInSome, Specimen, Specimens};
 pub use story::Story;
 

@@ -3,9 +3,8 @@
 use super::story::{one_of, sure, valued};
 use super::{Diagnosis, Findings};
 use crate::output::{Printable, Sheet, table};
-use actuator_gap::ParameterValue;
 use model_gap::discovery::{Confidence, Verdict};
-use model_gap::{Class, in_common};
+use model_gap::{Class, ParameterValue, in_common};
 use serde::Serialize;
 use std::collections::BTreeMap;
 

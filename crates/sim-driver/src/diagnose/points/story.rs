@@ -1,0 +1,363 @@
+//! What the terminal and the files say of points of test.
+
+use crate::SimError;
+use crate::diagnose::story::{one_of, sure, valued};
+use crate::files::significant;
+use crate::output::{Printable, Sheet, json, table, table_of};
+use crate::problem::Place;
+use model_gap::discovery::{Found, Verdict};
+use model_gap::points::{ChannelGain, NextPoints, PointFinding, PointTable};
+use model_gap::{ChannelGainValue, Findings, GapError, Told, places};
+use serde::Serialize;
+use std::fmt::Write;
+
+/// Rows of a table on the first screen.
+const SHOWN: usize = 6;
+
+/// Points of test with what was found of them.
+#[derive(Debug, Clone)]
+pub struct PointDiagnosis {
+    /// One line about the data.
+    pub title: String,
+    /// Kind of the data.
+    pub data_kind: &'static str,
+    /// The points with the simulation.
+    pub table: PointTable,
+    /// What was found.
+    pub found: PointFinding,
+}
+
+impl PointDiagnosis {
+    /// Finds what the simulation of a table lacks; with `only`, fits these suspects and refuses nothing.
+    ///
+    /// # Errors
+    /// [`SimError::Diagnosis`] at the place of the data.
+    pub fn of(
+        (title, folder): (String, &str),
+        data_kind: &'static str,
+        table: PointTable,
+        only: &[String],
+    ) -> Result<Self, SimError> {
+        let at = |source: GapError| SimError::Diagnosis {
+            place: Place::file(folder),
+            source: source.into(),
+        };
+        let ids: Vec<&str> = table.suspects.iter().map(|own| own.name).collect();
+        let found = match &places(&ids, only).map_err(at)?[..] {
+            [] => table.find(),
+            given => table.refit(given),
+        };
+        Ok(Self { title, data_kind, found: found.map_err(at)?, table })
+    }
+
+    fn id(&self, candidate: usize) -> &'static str {
+        self.found.candidates[candidate].id
+    }
+
+    /// The findings, as other programs read them.
+    pub fn findings(&self) -> Findings {
+        let PointFinding { finding, candidates, measured, gains, next, .. } = &self.found;
+        let runs: Vec<String> = measured.iter().map(|&p| self.table.points[p].id.clone()).collect();
+        let told = Told {
+            finding,
+            candidates,
+            runs: &runs,
+            data_kind: self.data_kind,
+            gain_unit: "standard deviations".to_owned(),
+            next_experiment: next.as_ref().map(|own| self.next_points(own)).unwrap_or_default(),
+        };
+        let mut findings = told.findings();
+        let in_units = |(own, limit): (&model_gap::points::Suspect, &Option<f64>)| {
+            let first = own.parameters.first().zip(*limit);
+            let value = first.and_then(|(p, limit)| {
+                let amount = p.tables.first()?.0;
+                Some(p.none + limit * (amount - p.none))
+            });
+            (own.name.to_owned(), value)
+        };
+        findings.would_have_shown =
+            self.table.suspects.iter().zip(&finding.limits).map(in_units).collect();
+        findings.gain_by_channel = gains.iter().map(|own| self.gain_of(own)).collect();
+        findings
+    }
+
+    fn gain_of(&self, own: &ChannelGain) -> ChannelGainValue {
+        let channel = &self.table.channels[own.channel];
+        ChannelGainValue {
+            channel: channel.name.clone(),
+            unit: channel.unit.clone(),
+            heldout_rms_before: own.rms_before,
+            heldout_rms_after: own.rms_after,
+            in_deviations: own.in_deviations,
+        }
+    }
+
+    /// The points advised, by name.
+    fn next_points(&self, next: &NextPoints) -> String {
+        let name = |&p: &usize| {
+            let point = &self.table.points[p];
+            let again = if point.is_measured() { " again" } else { "" };
+            format!("point {}{again}", point.id)
+        };
+        next.points.iter().map(name).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Files to write: findings, and the readings with what is simulated before and after.
+    ///
+    /// # Errors
+    /// [`SimError::Data`] if JSON cannot express the findings.
+    pub fn files(&self) -> Result<Vec<(String, String)>, SimError> {
+        let findings = json(&self.findings())?;
+        Ok(vec![
+            ("findings.json".to_owned(), findings),
+            ("residuals.csv".to_owned(), self.residuals()),
+        ])
+    }
+
+    /// One row for each reading: measured, simulated, deviation, and measured less simulated before and after over it.
+    fn residuals(&self) -> String {
+        let mut text =
+            String::from("point,channel,measured,simulated,sd,residual_sd,residual_after_sd\n");
+        let finding = &self.found.finding;
+        let pairs = finding.residual_before.iter().zip(&finding.residual_after);
+        for (&p, (before, after)) in self.found.measured.iter().zip(pairs) {
+            let point = &self.table.points[p];
+            let read =
+                point.measured.iter().enumerate().filter_map(|(c, value)| Some((c, (*value)?)));
+            for ((c, value), (before, after)) in read.zip(before.iter().zip(after)) {
+                let [simulated, deviation] = [self.table.predicted[p][c], point.deviation[c]];
+                let name = &self.table.channels[c].name;
+                let short = |value: f64| significant(value, 5);
+                // writing to a String cannot fail
+                let _ = writeln!(
+                    text,
+                    "{},{name},{value},{simulated},{deviation},{},{}",
+                    point.id,
+                    short(*before),
+                    short(*after)
+                );
+            }
+        }
+        text
+    }
+
+    /// The verdict in words.
+    fn verdict(&self) -> String {
+        let finding = &self.found.finding;
+        let how = sure(finding.confidence);
+        let names: Vec<&str> = finding.causes.iter().map(|own| self.id(own.candidate)).collect();
+        let names = names.join(" + ");
+        match finding.verdict {
+            Verdict::NothingMissing => {
+                format!(
+                    "Nothing is missing ({how}): the misfit is what readings and simulation are stated to be off by."
+                )
+            }
+            Verdict::Named => format!("Missing ({how}): {names}."),
+            Verdict::NamedStructureRemains => {
+                format!("Missing ({how}): {names}; structure remains that it does not explain.")
+            }
+            Verdict::Ambiguous => {
+                let one = |found: &Found| {
+                    let mut ids = vec![self.id(found.candidate)];
+                    ids.extend(found.alternatives.iter().map(|other| self.id(other.candidate)));
+                    one_of(&ids)
+                };
+                let sets: Vec<String> = finding.causes.iter().map(one).collect();
+                format!("Missing: {}; these points do not distinguish them.", sets.join(" + "))
+            }
+            Verdict::Unknown => {
+                "Something is missing, and no suspect explains it: no name is given.".to_owned()
+            }
+            Verdict::NotObservable => "These points cannot show what could be missing.".to_owned(),
+        }
+    }
+
+    /// The causes with their parameters, and why the verdict is what it is.
+    fn causes(&self, sheet: &mut Sheet) {
+        for found in &self.found.finding.causes {
+            let cause = &self.found.candidates[found.candidate];
+            let colon = if cause.physics.is_empty() { "" } else { ": " };
+            sheet.line(format_args!("  {}{colon}{}", cause.id, cause.physics));
+            for own in found.parameters.iter().filter(|own| !own.is_shape) {
+                sheet.line(format_args!("    {}", valued(own.name, own.value, own.unit, own.ci95)));
+            }
+            for other in found.compared.iter().filter(|other| other.is_as_likely()) {
+                sheet.line(format_args!(
+                    "    {} in its place leaves a chi-square higher by {:.0}; {:.0} would tell them apart",
+                    self.id(other.candidate),
+                    other.delta_chi2,
+                    other.discrimination_threshold
+                ));
+            }
+        }
+        let off = self.found.finding.standing_out.iter();
+        let off: Vec<&str> = off
+            .map(|own| self.table.points[self.found.measured[own.experiment]].id.as_str())
+            .collect();
+        if !off.is_empty() {
+            sheet.line(format_args!("  points beyond their deviations: {}", off.join(", ")));
+        }
+        for reason in &self.found.finding.reasons {
+            sheet.line(format_args!("  {reason}"));
+        }
+    }
+
+    /// The channels whose error falls most, on points held out.
+    fn gains(&self, most: usize, sheet: &mut Sheet) {
+        let gains = &self.found.gains;
+        if gains.is_empty() {
+            return;
+        }
+        let fall = |own: &ChannelGain| own.in_deviations[0] - own.in_deviations[1];
+        let mut order: Vec<&ChannelGain> = gains.iter().collect();
+        order.sort_by(|a, b| fall(b).total_cmp(&fall(a)));
+        order.truncate(most);
+        sheet.line("\nError on points held out, rms");
+        sheet.block(&table_of(
+            &order,
+            &[
+                ("channel", &|own| self.table.channels[own.channel].name.clone()),
+                ("before", &|own| significant(own.rms_before, 3).to_string()),
+                ("after", &|own| significant(own.rms_after, 3).to_string()),
+                ("before, sd", &|own| significant(own.in_deviations[0], 3).to_string()),
+                ("after, sd", &|own| significant(own.in_deviations[1], 3).to_string()),
+            ],
+        ));
+        if gains.len() > most {
+            sheet.line(format_args!("  {} more channels: --details", gains.len() - most));
+        }
+    }
+
+    /// What to measure next.
+    fn next(&self, sheet: &mut Sheet) {
+        let Some(next) = &self.found.next else { return };
+        sheet.line(format_args!("Measure next: {}", self.next_points(next)));
+        let open: Vec<&str> = next.open.iter().map(|&c| self.id(c)).collect();
+        let told = if next.told_apart >= 1.0 {
+            "it would tell them apart".to_owned()
+        } else if next.told_apart > 0.0 {
+            format!("it would tell {:.0} % of the pairs apart", 100.0 * next.told_apart)
+        } else {
+            format!(
+                "no point of the table tells them apart: it comes nearest, with {:.0} % of the difference needed",
+                100.0 * next.least_distance.min(1.0)
+            )
+        };
+        sheet.line(format_args!("  open: {}; {told}", open.join(", ")));
+    }
+
+    /// What would have been seen, where nothing is missing.
+    fn seen(&self, findings: &Findings, sheet: &mut Sheet) {
+        if findings.verdict != Verdict::NothingMissing {
+            return;
+        }
+        let one = |own: &model_gap::points::Suspect| {
+            let value = findings.would_have_shown.get(own.name).copied().flatten()?;
+            Some(format!("{} {}", own.name, significant(value, 4)))
+        };
+        let sizes: Vec<String> = self.table.suspects.iter().filter_map(one).collect();
+        sheet.line(format_args!(
+            "  Would have been seen with 90 % probability, from these values on: {}",
+            sizes.join(", ")
+        ));
+    }
+
+    /// What it rests on.
+    fn ground(&self, sheet: &mut Sheet) {
+        let table = &self.table;
+        sheet.line(format_args!("Diagnosis: {}", self.title));
+        sheet.line(format_args!(
+            "  {} readings at {} points, {} suspects, {} other models thought as good, {} uncertain inputs",
+            table.values(),
+            self.found.measured.len(),
+            table.suspects.len(),
+            table.alternatives.len(),
+            table.uncertain.len()
+        ));
+        let gains: Vec<f64> = table.instruments.iter().map(|own| 100.0 * own.gain).collect();
+        let low = significant(gains.iter().copied().fold(f64::INFINITY, f64::min), 2);
+        let high = significant(gains.iter().copied().fold(0.0, f64::max), 2);
+        let right = if low < high { format!("{low} to {high}") } else { low.to_string() };
+        sheet.line(format_args!(
+            "  Gains of the channels are taken to be right to {right} % (1 sd); a smooth error of one sd of a reading is allowed for"
+        ));
+        if table.alternatives.is_empty() {
+            sheet.line(
+                "  No other model was given: what an equally good one would differ by is not known",
+            );
+        }
+    }
+
+    /// What each suspect could explain.
+    fn screening(&self, sheet: &mut Sheet) {
+        sheet.line("\nScreening: drop of chi-square that each suspect could bring, and the floor");
+        let finding = &self.found.finding;
+        let ratio = |c: usize| finding.screen[c].score / finding.screen[c].threshold.max(1e-9);
+        let mut order: Vec<usize> = (0..self.found.candidates.len()).collect();
+        order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
+        let rows = order.iter().map(|&c| {
+            let s = &finding.screen[c];
+            if let Some(why) = &self.found.candidates[c].blocked {
+                return vec![
+                    self.id(c).to_owned(),
+                    "-".into(),
+                    "-".into(),
+                    "-".into(),
+                    why.clone(),
+                ];
+            }
+            let alike = s.most_confused.map(|(b, cosine)| format!("{} {cosine:+.2}", self.id(b)));
+            let numbers = [s.score, s.threshold].map(|drop| format!("{drop:.0}"));
+            let [score, floor] = numbers;
+            let absorbed = format!("{:.0}", 100.0 * s.absorbed);
+            vec![self.id(c).to_owned(), score, floor, absorbed, alike.unwrap_or_default()]
+        });
+        sheet.block(&table(&["suspect", "score", "floor", "absorbed %", "most alike"], rows));
+    }
+}
+
+/// A diagnosis of points, printable.
+#[derive(Clone, Serialize)]
+#[serde(transparent)]
+pub struct PointStory<'a> {
+    findings: Findings,
+    #[serde(skip)]
+    own: &'a PointDiagnosis,
+}
+
+impl<'a> PointStory<'a> {
+    /// The story of a diagnosis.
+    pub fn of(own: &'a PointDiagnosis) -> Self {
+        Self { findings: own.findings(), own }
+    }
+
+    fn told(&self, most: usize) -> Sheet {
+        let mut sheet = Sheet::default();
+        self.own.causes(&mut sheet);
+        self.own.seen(&self.findings, &mut sheet);
+        self.own.gains(most, &mut sheet);
+        self.own.next(&mut sheet);
+        sheet.line("");
+        self.own.ground(&mut sheet);
+        sheet
+    }
+}
+
+impl Printable for PointStory<'_> {
+    fn text(&self) -> String {
+        let mut screen = Sheet::default();
+        screen.paragraphs(&self.own.verdict());
+        screen.paragraphs(&self.told(SHOWN).finish());
+        screen.line("\nEvery suspect and every channel: --details");
+        screen.screen()
+    }
+
+    fn details(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(self.own.verdict());
+        sheet.block(&self.told(usize::MAX).finish());
+        self.own.screening(&mut sheet);
+        sheet.finish()
+    }
+}
