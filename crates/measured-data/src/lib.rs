@@ -18,8 +18,8 @@ mod tables;
 pub use dataset::{
     Accuracy, BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet,
     DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, PointColumn, PointData,
-    ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor, VoltageAccuracy, read_bench,
-    read_curves, read_dataset, read_loops,
+    ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor, SweepData, VoltageAccuracy, read_bench,
+    read_curves, read_dataset, read_loops, read_sweep,
 };
 pub use error::DataError;
 pub use files::{

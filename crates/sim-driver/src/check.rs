@@ -12,6 +12,7 @@ use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::stored_actuator::{GainRule, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
+use rotor_gap::Column;
 use serde::Serialize;
 use std::path::Path;
 
@@ -27,6 +28,8 @@ pub enum FileKind {
     GenericLoop,
     /// A data folder of first-order reversal curves.
     ReversalCurves,
+    /// A data folder of points of test of a rotor.
+    RotorSweep,
     /// An actuator written by `hhc identify`.
     Actuator,
 }
@@ -81,7 +84,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         warnings.extend(loaded.in_words(doubts));
         Ok(CheckResult { file: name, kind: FileKind::Case, summary: loaded.case.title, warnings })
     } else {
-        let message = "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, GenericLoop or ReversalCurves, an actuator file with kind: Actuator";
+        let message = "is neither a case, a dataset.ron nor an actuator file; a case has sections such as rotor: and trim:, a data set begins with kind: ActuatorBench, GenericLoop, ReversalCurves or RotorSweep, an actuator file with kind: Actuator";
         Err(Problem::new(Place::file(name), Fault::Other(message.to_owned())).into())
     }
 }
@@ -148,6 +151,19 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
             let summary = format!("{}: {}, {curves} curves", data.title, labels(&data.channels));
             (FileKind::ReversalCurves, summary)
         }
+        DataSet::Sweep(data) => {
+            let mut problems = Problems::default();
+            for own in &data.points.columns {
+                if let Err(reason) = Column::parse(&own.name) {
+                    let message = format!("the column `{}` is not known: {reason}", own.name);
+                    let place = data.points.table.column_place(&own.name);
+                    problems.push(place, Fault::Refused { message });
+                }
+            }
+            problems.into_result(Some(()))?;
+            let (points, columns) = (data.points.ids.len(), data.points.columns.len());
+            (FileKind::RotorSweep, format!("{}: {points} points, {columns} columns", data.title))
+        }
     };
     Ok(CheckResult { file, kind, summary, warnings })
 }
@@ -159,6 +175,7 @@ impl Printable for CheckResult {
             FileKind::Bench => "bench data",
             FileKind::GenericLoop => "generic loops",
             FileKind::ReversalCurves => "reversal curves",
+            FileKind::RotorSweep => "points of a rotor",
             FileKind::Actuator => "actuator",
         };
         format!("{}: {kind}, no problems ({})", self.file, self.summary)

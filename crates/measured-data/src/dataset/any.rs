@@ -2,7 +2,9 @@
 
 use super::file::{DatasetFile, DatasetKind};
 use super::open::read_description;
-use super::{BenchData, CurveData, LoopData, read_bench, read_curves, read_loops};
+use super::{
+    BenchData, CurveData, LoopData, SweepData, read_bench, read_curves, read_loops, read_sweep,
+};
 use crate::files::{Folder, read_ron};
 use crate::problem::{Problem, Problems};
 
@@ -15,6 +17,8 @@ pub enum DataSet {
     Loops(LoopData),
     /// Kind `ReversalCurves`.
     Curves(CurveData),
+    /// Kind `RotorSweep`.
+    Sweep(SweepData),
 }
 
 impl DataSet {
@@ -23,6 +27,7 @@ impl DataSet {
             Self::Bench(data) => (data.runs.len(), &data.warnings),
             Self::Loops(data) => (data.runs.len(), &data.warnings),
             Self::Curves(data) => (data.runs.len(), &[]),
+            Self::Sweep(data) => (1, &data.warnings),
         }
     }
 
@@ -48,6 +53,7 @@ pub fn read_dataset(folder: &Folder) -> Result<DataSet, Problems> {
     match kind {
         Some(DatasetKind::GenericLoop) => read_loops(folder).map(DataSet::Loops),
         Some(DatasetKind::ReversalCurves) => read_curves(folder).map(DataSet::Curves),
+        Some(DatasetKind::RotorSweep) => read_sweep(folder).map(DataSet::Sweep),
         Some(DatasetKind::ActuatorBench) | None => read_bench(folder).map(DataSet::Bench),
     }
 }

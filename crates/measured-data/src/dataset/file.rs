@@ -15,6 +15,8 @@ pub enum DatasetKind {
     GenericLoop,
     /// First-order reversal curves, quasi-static: a curve number instead of a time.
     ReversalCurves,
+    /// Points of test of a rotor: one table, a row for each point.
+    RotorSweep,
 }
 
 /// What a run is for.
@@ -78,6 +80,23 @@ pub struct DatasetFile {
     /// smallest to the largest input of all runs. Not `ActuatorBench`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub input_range: Option<(f64, f64)>,
+}
+
+impl DatasetFile {
+    /// A data set of a kind, with what all kinds have.
+    pub fn of(kind: DatasetKind, title: String, runs: Vec<RunFile>) -> Self {
+        Self {
+            kind,
+            title,
+            runs,
+            flap_deg_per_um: None,
+            command_range_volt: None,
+            accuracy: None,
+            input: None,
+            output: None,
+            input_range: None,
+        }
+    }
 }
 
 /// One record.

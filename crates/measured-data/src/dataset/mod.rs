@@ -9,6 +9,7 @@ mod loops;
 mod open;
 mod points;
 mod run;
+mod sweep;
 
 pub use accuracy::{Accuracy, DisplacementAccuracy, VoltageAccuracy};
 pub use any::{DataSet, read_dataset};
@@ -22,3 +23,4 @@ pub use loops::{LoopData, read_loops};
 pub use open::DATASET;
 pub use points::{PointColumn, PointData, Scatter};
 pub use run::Run;
+pub use sweep::{SweepData, read_sweep};

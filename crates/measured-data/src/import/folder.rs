@@ -83,7 +83,7 @@ pub struct ColumnSpan {
     pub largest: f64,
 }
 
-fn span(label: &str, values: &[f64]) -> ColumnSpan {
+pub(super) fn span(label: &str, values: &[f64]) -> ColumnSpan {
     let (least, largest) = limits(values);
     ColumnSpan { column: label.to_owned(), least, largest }
 }
@@ -297,7 +297,7 @@ impl Parts {
         let place = || source.place().field(&labels[0]);
         let (least, largest) = limits(&gathered.columns[0]);
         match choice.kind {
-            ImportKind::GenericLoop => {
+            ImportKind::GenericLoop | ImportKind::RotorSweep => {
                 check_record(&record, problems, warnings);
                 let (unit, remedy) = (channels[0].unit.symbol, "correct --range, or its unit");
                 let outside =

@@ -10,6 +10,7 @@ mod folder;
 mod gather;
 mod mat;
 mod micromag;
+mod sweep;
 
 pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
@@ -54,6 +55,8 @@ pub enum ImportKind {
     ActuatorBench,
     /// Any input to any output, in their own units.
     GenericLoop,
+    /// Points of test of a rotor, one row each.
+    RotorSweep,
 }
 
 /// What to import and how.
@@ -118,6 +121,9 @@ pub fn import(request: &ImportRequest) -> Result<ImportResult, DataError> {
         return Err(DataError::WouldOverwrite { path: request.out.clone() });
     }
     check_request(request)?;
+    if let (true, Some(path)) = (sweep::is_asked_for(request), request.files.first()) {
+        return sweep::import_sweep(request, path);
+    }
     let mut problems = Problems::default();
     let mut sources = Vec::new();
     for path in &request.files {
@@ -239,6 +245,8 @@ fn folder_kind(imported: &Imported) -> DatasetKind {
         Imported::Record(table) => match table.choice.kind {
             ImportKind::ActuatorBench => DatasetKind::ActuatorBench,
             ImportKind::GenericLoop => DatasetKind::GenericLoop,
+            // points are no record: they are imported before
+            ImportKind::RotorSweep => DatasetKind::RotorSweep,
         },
     }
 }

@@ -181,7 +181,9 @@ impl<S: Simulator> Search<'_, S> {
         let missed = candidates.filter(|(own, limit)| {
             own.is_common && own.refuted.is_none() && limit.is_none_or(|size| size > matters)
         });
-        missed.map(|(own, _)| own.id).collect()
+        let mut ids: Vec<&'static str> = missed.map(|(own, _)| own.id).collect();
+        ids.dedup();
+        ids
     }
 
     /// The class of a cause, with the members that the data leave open; sure if no cause of another class is near it.

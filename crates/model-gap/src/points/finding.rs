@@ -4,7 +4,7 @@ use super::floor::Floor;
 use super::next::{NextPoints, next_points};
 use super::predicted::Tables;
 use super::table::PointTable;
-use crate::discovery::{Discovery, Finding, Settings, Yardstick};
+use crate::discovery::{Discovery, Finding, FittedParameter, Settings, Yardstick};
 use crate::{Candidate, GapError};
 
 /// What was found at points of test.
@@ -88,15 +88,30 @@ impl PointTable {
             settings,
             ..Discovery::new(&traces, &tables, &candidates)
         };
-        let finding = match given {
+        let mut finding = match given {
             Some(given) => discovery.refit(given)?,
             None => discovery.find()?,
         };
         let next = next_points(self, &floor, &candidates, &finding)?;
         let gains = self.gains(&tables, &finding);
         let measured = tables.rows.iter().map(|(p, _)| *p).collect();
+        for found in &mut finding.causes {
+            self.show(found.candidate, &mut found.parameters);
+            for other in &mut found.alternatives {
+                self.show(other.candidate, &mut other.parameters);
+            }
+        }
         let model_error = floor.model_error;
         Ok(PointFinding { finding, candidates, measured, gains, model_error, next })
+    }
+
+    /// Values of parameters as they are reported.
+    fn show(&self, suspect: usize, values: &mut [FittedParameter]) {
+        for (value, own) in values.iter_mut().zip(&self.suspects[suspect].parameters) {
+            value.value = own.shown.of(value.value);
+            value.ci95 = value.ci95.map(|end| own.shown.of(end));
+            value.ci95.sort_by(f64::total_cmp);
+        }
     }
 
     /// The held-out errors channel by channel.

@@ -9,13 +9,14 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 /// Smooth error of the simulation that is always allowed for, over the deviation of a reading: points share what neither
 /// repeats nor alternatives show, such as a density or a blockage.
 const SMOOTH: f64 = 1.0;
-/// Part of the one alternative that there is by which the simulation is taken to be wrong besides: no other tells.
-const OF_ONE_ALTERNATIVE: f64 = 0.5;
+/// Part of what the others do not explain of an alternative left out, in amplitude, by which the truth is taken to lie
+/// beside all of them.
+const LEFT_OUT: f64 = 0.25;
 
 /// The error of the simulation that no alternative holds, by channel and in its unit.
 ///
 /// Each alternative is left out in turn. What the others, the uncertain inputs and the calibrations do not explain of it is
-/// what the truth, one more model, is expected to differ by. The channels of one harmonic share it, so that the reference
+/// what two models differ by that are thought equally good; the truth, one more of them, is near these. The channels of one harmonic share it, so that the reference
 /// of azimuth does not matter.
 pub(super) fn model_error(table: &PointTable) -> Result<Vec<f64>, GapError> {
     let width = table.channels.len();
@@ -29,11 +30,10 @@ pub(super) fn model_error(table: &PointTable) -> Result<Vec<f64>, GapError> {
         let others = alternatives.iter().enumerate().filter(|(other, _)| *other != out);
         let columns: Vec<&Vec<f64>> = others.map(|(_, own)| own).chain(&known).collect();
         let left = beyond(left_out, &columns)?;
-        let scale = if alternatives.len() == 1 { OF_ONE_ALTERNATIVE } else { 1.0 };
         let mut values = left.iter();
         for (p, channels) in &tables.rows {
             for (&c, value) in channels.iter().zip(&mut values) {
-                squares[c] += (scale * value * tables.sigma[*p][c]).powi(2);
+                squares[c] += (LEFT_OUT * value * tables.sigma[*p][c]).powi(2);
                 counts[c] += 1.0;
             }
         }

@@ -19,4 +19,6 @@ mod table;
 pub use finding::{ChannelGain, PointFinding};
 pub use names::channels_of;
 pub use next::NextPoints;
-pub use table::{Channel, Grid, Instrument, Part, Point, PointTable, Suspect, SuspectParameter};
+pub use table::{
+    Channel, Grid, Instrument, Part, Point, PointTable, Shown, Suspect, SuspectParameter,
+};

@@ -8,22 +8,43 @@ impl SuspectParameter {
     /// Factors on what each of its tables adds to the prediction, at a value.
     ///
     /// ```text
-    /// one table at a:        e = x / a d_a
-    /// tables at a and b:     e = x (x - b) / (a (a - b)) d_a + x (x - a) / (b (b - a)) d_b
+    /// one table at a:    e = x / a d_a
+    /// more:              e = sum over three neighbours of their Lagrange polynomials times d, 0 without effect among them
     /// ```
-    /// `x` is the value less that of no effect, `d` what a table adds. Beyond the outermost of `a`, `b` and 0 the parabola
-    /// goes on straight: nothing is known of its bend there.
+    /// `x` is the value less that of no effect, `d` what a table adds. Beyond the outermost tables the parabola goes on
+    /// straight: nothing is known of its bend there.
     fn factors(&self, value: f64) -> Vec<f64> {
         let x = value - self.none;
-        let at: Vec<f64> = self.tables.iter().map(|table| table.0 - self.none).collect();
-        let [a, b] = at[..] else { return at.iter().map(|a| x / a).collect() };
-        let (low, high) = (a.min(b).min(0.0), a.max(b).max(0.0));
+        let mut factors = vec![0.0; self.tables.len()];
+        // places of the tables, that of no effect among them
+        let mut nodes: Vec<(f64, Option<usize>)> = vec![(0.0, None)];
+        nodes.extend(self.tables.iter().enumerate().map(|(k, own)| (own.0 - self.none, Some(k))));
+        nodes.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if let [first, last] = nodes[..] {
+            if let Some(k) = first.1.or(last.1) {
+                factors[k] = x / (first.0 + last.0);
+            }
+            return factors;
+        }
+        let [low, .., high] = nodes[..] else { return factors };
+        let (low, high) = (low.0, high.0);
         let inside = x.clamp(low, high);
-        let one = |a: f64, b: f64| {
-            let scale = a * (a - b);
-            inside * (inside - b) / scale + (x - inside) * (2.0 * inside - b) / scale
+        let after = nodes.iter().position(|own| own.0 >= inside).unwrap_or(nodes.len() - 1);
+        // the node nearer to the value is the middle of the three
+        let nearer = match nodes.get(after.wrapping_sub(1)) {
+            Some(before) if inside - before.0 < nodes[after].0 - inside => after - 1,
+            _ => after,
         };
-        vec![one(a, b), one(b, a)]
+        let middle = nearer.clamp(1, nodes.len() - 2);
+        let three = &nodes[middle - 1..=middle + 1];
+        for (own, others) in [(0, [1, 2]), (1, [0, 2]), (2, [0, 1])] {
+            let Some(table) = three[own].1 else { continue };
+            let [a, b] = others.map(|other| three[other].0);
+            let scale = (three[own].0 - a) * (three[own].0 - b);
+            let slope = 2.0 * inside - a - b;
+            factors[table] = ((inside - a) * (inside - b) + (x - inside) * slope) / scale;
+        }
+        factors
     }
 }
 
@@ -58,7 +79,10 @@ impl<'a> Tables<'a> {
     /// The candidates of the suspects.
     pub(super) fn candidates(&self) -> Vec<Candidate> {
         let one = |own: &Suspect| {
+            // what has no table only says which suspect it is
+            let held = |p: &SuspectParameter| p.tables.is_empty().then_some(0.0);
             let parameter = |p: &SuspectParameter| Parameter {
+                held: held(p),
                 name: p.name,
                 unit: p.unit,
                 low: p.range.0,
@@ -67,15 +91,24 @@ impl<'a> Tables<'a> {
                 none: p.none,
                 ..Parameter::default()
             };
-            let at = |sign: f64| -> Vec<f64> {
+            let at = |table: usize, sign: f64| -> Vec<f64> {
                 let own = own.parameters.iter().map(|p| {
-                    let amount = p.tables.first().map_or(0.0, |table| table.0 - p.none);
+                    let own = p.tables.get(table).or(p.tables.first());
+                    let amount = own.map_or(0.0, |table| table.0 - p.none);
                     sign.mul_add(amount, p.none).clamp(p.range.0, p.range.1)
                 });
                 own.collect()
             };
             let none: Vec<f64> = own.parameters.iter().map(|p| p.none).collect();
-            let starts = [1.0, -1.0].map(at).into_iter().filter(|values| *values != none).collect();
+            let most = own.parameters.iter().map(|p| p.tables.len()).max().unwrap_or(0);
+            let mut starts: Vec<Vec<f64>> = Vec::new();
+            for table in 0..most {
+                for start in [at(table, 1.0), at(table, -1.0)] {
+                    if start != none && !starts.contains(&start) {
+                        starts.push(start);
+                    }
+                }
+            }
             Candidate {
                 id: own.name,
                 physics: own.physics,
@@ -117,7 +150,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_tables_make_a_parabola_that_goes_on_straight() {
+    fn tables_make_parabolas_that_go_on_straight() {
         let tables = vec![(1.5, vec![]), (0.5, vec![])];
         let own = SuspectParameter { none: 1.0, tables, ..SuspectParameter::default() };
         // an effect of 2 x + 3 x^2, told at x = 0.5 and -0.5
@@ -132,7 +165,21 @@ mod tests {
         // slope at the end: 2 + 6 x
         assert!((at(2.0) - (effect(0.5) + 0.5 * 5.0)).abs() < 1e-12);
         assert!((at(0.0) - (effect(-0.5) + 0.5 * 1.0)).abs() < 1e-12);
-        let one = SuspectParameter { tables: vec![(0.5, vec![])], ..own };
+        let one = SuspectParameter { tables: vec![(0.5, vec![])], ..own.clone() };
         assert!((one.factors(2.0)[0] + 2.0).abs() < 1e-12);
+        // five tables of a sine: of third order between them
+        let most = |step: f64| {
+            let at = [1.0, -1.0, 2.0, -2.0, 3.0].map(|k| (k * step, vec![]));
+            let own = SuspectParameter { none: 0.0, tables: at.into(), ..own.clone() };
+            let miss = |k: u32| {
+                let x = step * (f64::from(k) / 10.0 - 2.0);
+                let found: f64 =
+                    own.factors(x).iter().zip(&own.tables).map(|(f, t)| f * t.0.sin()).sum();
+                (found - x.sin()).abs()
+            };
+            (0..=50).map(miss).fold(0.0, f64::max)
+        };
+        let (coarse, fine) = (most(0.4), most(0.2));
+        assert!(coarse < 5e-3 && (6.0..10.0).contains(&(coarse / fine)), "{coarse} {fine}");
     }
 }

@@ -133,8 +133,44 @@ pub struct SuspectParameter {
     pub none: f64,
     /// Values it may have, lower limit first.
     pub range: (f64, f64),
-    /// One or two of its values with what the simulation predicts there; the first is an amount that matters.
+    /// Some of its values with what the simulation predicts there; the first is an amount that matters. None of a value that
+    /// only says which suspect it is: it is [`Self::none`] and not fitted.
     pub tables: Vec<(f64, Grid)>,
+    /// What is reported of a value.
+    pub shown: Shown,
+}
+
+/// What is reported of the value of a parameter.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Shown {
+    /// The value.
+    #[default]
+    Itself,
+    /// One over it, such as the stiffness of a compliance.
+    Reciprocal,
+    /// One over its root, such as the frequency of a compliance over a mass.
+    ReciprocalRoot,
+    /// What stands beside it in a list, by value, straight between.
+    Beside(Vec<(f64, f64)>),
+}
+
+impl Shown {
+    /// What is reported of a value.
+    pub fn of(&self, value: f64) -> f64 {
+        match self {
+            Self::Itself => value,
+            Self::Reciprocal => 1.0 / value,
+            Self::ReciprocalRoot => 1.0 / value.max(0.0).sqrt(),
+            Self::Beside(list) => {
+                let after = list.iter().position(|own| own.0 >= value).unwrap_or(list.len());
+                let after = after.clamp(1, list.len().max(2) - 1);
+                match (list.get(after - 1), list.get(after)) {
+                    (Some(a), Some(b)) => a.1 + (value - a.0) / (b.0 - a.0) * (b.1 - a.1),
+                    _ => value,
+                }
+            }
+        }
+    }
 }
 
 impl PointTable {

@@ -88,8 +88,14 @@ impl Sweep {
         let tables = [at, back].map(|v| (v, self.grid(|mu, speed| with(name, v, mu, speed))));
         let wide = 20.0 * (amount - none).abs();
         let range = (none - wide, none + wide);
-        let parameter =
-            SuspectParameter { name: "amount", unit, none, range, tables: tables.into() };
+        let parameter = SuspectParameter {
+            name: "amount",
+            unit,
+            none,
+            range,
+            tables: tables.into(),
+            ..SuspectParameter::default()
+        };
         let form_error = self.form_error;
         Suspect { name, form_error, parameters: vec![parameter], ..Suspect::default() }
     }

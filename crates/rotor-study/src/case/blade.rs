@@ -201,6 +201,9 @@ section! {
         /// On the torsion stiffness.
         #[serde(default = "one")]
         pub gj: f64 = 1.0, Within(0.5, 2.0), "", "a factor on what the other blades have: 1.02 is 2 % more";
+        /// Pitch beyond that of the others, such as a pitch link of another length.
+        #[serde(default, skip_serializing_if = "is_default")]
+        pub pitch_deg: f64 = 0.0, Within(-2.0, 2.0), "deg", "a pitch link is set to 0.1 deg or better";
         /// On the motion of its flaps.
         #[serde(default = "one")]
         pub flap_motion: f64 = 1.0, Within(-2.0, 2.0), "", "1 moves its flaps like the others', 0 not at all";

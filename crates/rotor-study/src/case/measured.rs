@@ -19,6 +19,22 @@ section! {
 }
 
 section! {
+    /// An input of the case that is not known well: what a diagnosis may move without a discovery. One of the two
+    /// standard deviations.
+    #[serde(deny_unknown_fields)]
+    pub struct UncertainField {
+        /// Path of the field, such as `rotor.gj`; of a table in its place the values are moved.
+        pub field: String = String::new(), Rule("required"), "", "the path of a number of the case";
+        /// Standard deviation, percent of the value.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub sd_percent: Option<f64> = None, Within(1e-6, 100.0), "%", "a stiffness is known to a few percent";
+        /// Standard deviation in the unit of the field.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub sd: Option<f64> = None, UpTo(1e12), "", "more than 0, in the unit of the field";
+    }
+}
+
+section! {
     /// Measured airloads of a section.
     #[serde(deny_unknown_fields)]
     pub struct MeasuredSection {

@@ -38,7 +38,7 @@ pub use control::{
 };
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
-pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection};
+pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection, UncertainField};
 pub use plausibility::PlausibilityWarning;
 pub use sections::{
     AerodynamicsValues, AirfoilStation, Case, CompressibilityChoice, CouplingsChoice,

@@ -6,7 +6,7 @@
 use super::field::{is_default, section, values};
 use super::{
     ActuatorValues, ControlValues, FlapValues, FreeWakeValues, MeasuredFiles, RotorValues,
-    TrimValues,
+    TrimValues, UncertainField,
 };
 use flap_aero::{AirfoilSpan, AttachedFlowModel, StallAirfoil};
 use rotor_base::RotorScales;
@@ -53,6 +53,9 @@ section! {
         /// Measured data of the flight.
         #[serde(skip_serializing_if = "is_default")]
         pub measured: MeasuredFiles = MeasuredFiles::default(), Any, "", "";
+        /// Inputs that are not known well, for `hhc diagnose`; left out, the usual ones of a rotor.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub uncertain: Vec<UncertainField> = vec![], Any, "", "";
     }
 }
 

@@ -62,7 +62,7 @@ impl TrimmedRotor {
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub(crate) fn near(case: &Case, other: &Self) -> Result<Self, StudyError> {
+    pub fn near(case: &Case, other: &Self) -> Result<Self, StudyError> {
         let tolerances =
             ResponseTolerances { linear: ROUGHLY_LINEAR, ..case.response_tolerances() };
         let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
@@ -266,7 +266,8 @@ impl TrimmedRotor {
         stations: &[f64],
     ) -> Result<(Stability, Vec<StationLoads>), ResponseError> {
         let mut solver = unlike.solver.clone();
-        let condition = self.flaps_at_rest();
+        let mut condition = self.flaps_at_rest();
+        condition.controls.theta0_rad += unlike.pitch_rad;
         let found = solver.blade_response(&condition, &self.trim.rotor)?;
         let loads = solver.station_loads(&condition, &found, stations)?;
         Ok((solver.stability(&condition, &found)?, loads))
@@ -304,9 +305,29 @@ impl TrimmedRotor {
         tip_mach: f64,
         azimuths: usize,
     ) -> Result<(Vec<StationAirloads>, Vec<TipMotion>), ResponseError> {
-        let (condition, found) = (self.flaps_at_rest(), &self.trim.rotor);
-        let loads = self.solver.airloads(&condition, found, stations, (tip_mach, azimuths))?;
-        Ok((loads, self.solver.tip_motion(found, azimuths)))
+        let still = vec![HarmonicSeries::zero(0); self.rotor().model().flaps.len()];
+        self.airloads_with((still, &self.trim.rotor), stations, tip_mach, azimuths)
+    }
+
+    /// The same of a response to flap motions of its own, rad.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::airloads`].
+    pub fn airloads_with(
+        &self,
+        (flap_angles_rad, response): (Vec<HarmonicSeries>, &RotorSolution),
+        stations: &[f64],
+        tip_mach: f64,
+        azimuths: usize,
+    ) -> Result<(Vec<StationAirloads>, Vec<TipMotion>), ResponseError> {
+        let condition = self.condition(flap_angles_rad);
+        let loads = self.solver.airloads(&condition, response, stations, (tip_mach, azimuths))?;
+        Ok((loads, self.solver.tip_motion(response, azimuths)))
+    }
+
+    /// Motion of the blade tip of a response, at so many equal azimuths.
+    pub fn tip_motion(&self, response: &RotorSolution, azimuths: usize) -> Vec<TipMotion> {
+        self.solver.tip_motion(response, azimuths)
     }
 
     pub(super) fn flaps_at_rest(&self) -> Condition {
@@ -333,10 +354,11 @@ impl TrimmedRotor {
         let each = rotors.into_iter().zip(&case.rotor.dissimilar_blades);
         each.map(|((field, rotor), own)| {
             let (position, flap_motion) = (own.blade - 1, own.flap_motion);
+            let pitch_rad = own.pitch_deg.to_radians();
             let solver = RotorSolver::new(Arc::new(rotor), mu, tolerances)
                 .map_err(|source| StudyError::Response { field, source })?
                 .with_root_pitch(case.root_pitch_rad());
-            Ok(UnlikeSolver { position, flap_motion, solver })
+            Ok(UnlikeSolver { position, flap_motion, pitch_rad, solver })
         })
         .collect()
     }
@@ -351,19 +373,22 @@ impl TrimmedRotor {
         flap_angles_rad: &[HarmonicSeries],
         about: &RotorSolution,
     ) -> Result<SixLoads, ResponseError> {
-        let condition = |factor: f64| {
-            self.condition(flap_angles_rad.iter().map(|angle| scaled(angle, factor)).collect())
+        let condition = |factor: f64, pitch_rad: f64| {
+            let angles = flap_angles_rad.iter().map(|angle| scaled(angle, factor)).collect();
+            let mut own = self.condition(angles);
+            own.controls.theta0_rad += pitch_rad;
+            own
         };
         let mut others: Vec<OtherBlade> = unlike
             .iter()
             .map(|one| OtherBlade {
                 position: one.position,
                 solver: one.solver.clone(),
-                condition: condition(one.flap_motion),
+                condition: condition(one.flap_motion, one.pitch_rad),
             })
             .collect();
         let mut alike = self.solver.clone();
-        dissimilar_hub_loads(&mut alike, (&condition(1.0), about), &mut others)
+        dissimilar_hub_loads(&mut alike, (&condition(1.0, 0.0), about), &mut others)
     }
 
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
@@ -408,5 +433,7 @@ impl TrimmedRotor {
 pub struct UnlikeSolver {
     position: usize,
     flap_motion: f64,
+    /// Pitch beyond that of the others.
+    pitch_rad: f64,
     solver: RotorSolver,
 }

@@ -7,10 +7,13 @@ use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
     Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis, PointStory,
-    Question, Record, Records, Specimens, Stage, Story, TableData, climb, extended, plan,
-    read_table, usual_runs,
+    Question, Record, Records, RotorPoints, Specimens, Stage, Story, TableData, climb, extended,
+    plan, read_table, usual_runs,
 };
-use crate::files::{DataSet, Folder, Source, read_dataset, refuse_input, ron_text, write_atomic};
+use crate::files::{
+    DATASET, DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
+    write_atomic,
+};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
@@ -32,6 +35,11 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let (Some(model), Some(output)) = (&args.model, &args.output) else {
         return planned(args);
     };
+    if let [data] = &args.data[..]
+        && let Some(sweep) = sweep_of(data)?
+    {
+        return rotor(args, model, &sweep, output);
+    }
     if let [data] = &args.data[..] {
         return print(&Story::of(&found_in(args, (model, data), output)?).render(form)?);
     }
@@ -49,6 +57,35 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let specimens = Specimens::of(&found);
     write_atomic(&output.join("specimens.json"), json(&specimens)?.as_bytes())?;
     print(&specimens.render(form)?)
+}
+
+/// The sweep of a folder; none of another kind of data.
+fn sweep_of(data: &Path) -> Result<Option<SweepData>, SimError> {
+    let folder = Folder::Disk(data.to_path_buf());
+    let is_sweep = folder.read(DATASET).is_ok_and(|source| source.text.contains("RotorSweep"));
+    Ok(if is_sweep { Some(read_sweep(&folder)?) } else { None })
+}
+
+/// Says what the simulation of a rotor lacks, from points of test.
+fn rotor(
+    args: &DiagnoseArgs,
+    case: &Path,
+    sweep: &SweepData,
+    output: &Path,
+) -> Result<(), SimError> {
+    let form = args.records.format.form();
+    let case = load_case(case)?;
+    warn(&sweep.warnings, form);
+    let progress = Progress::new(DIAGNOSIS);
+    let begun = |share: f64, what: &str| progress.begin((DIAGNOSIS as f64 * share) as usize, what);
+    let found = RotorPoints::of(&case, sweep, &args.only, &begun);
+    progress.finish();
+    let found = found?;
+    write_texts(output, found.files()?)?;
+    for note in &found.notes {
+        eprintln!("{note}");
+    }
+    print(&PointStory::of(&found.diagnosis).render(form)?)
 }
 
 /// Says what anyone's simulator lacks, from tables of it.
@@ -239,6 +276,11 @@ fn records_of(folder: &Path) -> Result<Records, SimError> {
     match &data {
         DataSet::Bench(bench) => Ok(bench.into()),
         DataSet::Loops(loops) => Ok(loops.into()),
+        DataSet::Sweep(sweep) => {
+            let place = Place::file(format!("{}/dataset.ron", sweep.folder)).field("kind");
+            let message = "points of a rotor are diagnosed alone, with a case: hhc diagnose CASE.ron --data DIR -o OUT";
+            Err(Problem::new(place, Fault::Refused { message: message.to_owned() }).into())
+        }
         DataSet::Curves(curves) => {
             let place = Place::file(format!("{}/dataset.ron", curves.folder)).field("kind");
             let message =

@@ -8,6 +8,7 @@ use crate::figures::figure_files;
 use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside};
 use crate::identification::{BenchIdentification, MODELS_COMPARED, identify_bench, identify_loops};
 use crate::output::{Printable, print};
+use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{StoredActuator, read_actuator, write_actuator};
 use preisach_dyn::identify::Settings;
@@ -31,6 +32,13 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
             let found = found?;
             let figures = args.figures.as_ref().map(|_| found.figure_files()).transpose()?;
             (found.stored(), found.summary(written).render(args.format.form())?, figures)
+        }
+        DataSet::Sweep(sweep) => {
+            let place = Place::file(format!("{}/dataset.ron", sweep.folder)).field("kind");
+            let message =
+                "points of a rotor identify no actuator: hhc diagnose CASE.ron --data DIR -o OUT"
+                    .to_owned();
+            return Err(Problem::new(place, Fault::Refused { message }).into());
         }
         DataSet::Bench(bench) => {
             let found = identify_bench(bench, &base, Some(&|| progress.step()));

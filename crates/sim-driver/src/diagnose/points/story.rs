@@ -9,6 +9,7 @@ use model_gap::discovery::{Found, Verdict};
 use model_gap::points::{ChannelGain, NextPoints, PointFinding, PointTable};
 use model_gap::{ChannelGainValue, Findings, GapError, Told, places};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 /// Rows of a table on the first screen.
@@ -67,18 +68,28 @@ impl PointDiagnosis {
             next_experiment: next.as_ref().map(|own| self.next_points(own)).unwrap_or_default(),
         };
         let mut findings = told.findings();
-        let in_units = |(own, limit): (&model_gap::points::Suspect, &Option<f64>)| {
+        findings.would_have_shown = self.limits();
+        findings.gain_by_channel = gains.iter().map(|own| self.gain_of(own)).collect();
+        findings
+    }
+
+    /// Value of the first parameter of each suspect from which on it would have been seen; of several of one name that which
+    /// is seen first.
+    fn limits(&self) -> BTreeMap<String, Option<f64>> {
+        let mut best: BTreeMap<String, (f64, Option<f64>)> = BTreeMap::new();
+        for (own, limit) in self.table.suspects.iter().zip(&self.found.finding.limits) {
             let first = own.parameters.first().zip(*limit);
             let value = first.and_then(|(p, limit)| {
                 let amount = p.tables.first()?.0;
-                Some(p.none + limit * (amount - p.none))
+                Some(p.shown.of(p.none + limit * (amount - p.none)))
             });
-            (own.name.to_owned(), value)
-        };
-        findings.would_have_shown =
-            self.table.suspects.iter().zip(&finding.limits).map(in_units).collect();
-        findings.gain_by_channel = gains.iter().map(|own| self.gain_of(own)).collect();
-        findings
+            let limit = limit.unwrap_or(f64::INFINITY);
+            let kept = best.entry(own.name.to_owned()).or_insert((f64::INFINITY, None));
+            if limit < kept.0 {
+                *kept = (limit, value);
+            }
+        }
+        best.into_iter().map(|(name, (_, value))| (name, value)).collect()
     }
 
     fn gain_of(&self, own: &ChannelGain) -> ChannelGainValue {
@@ -252,11 +263,10 @@ impl PointDiagnosis {
         if findings.verdict != Verdict::NothingMissing {
             return;
         }
-        let one = |own: &model_gap::points::Suspect| {
-            let value = findings.would_have_shown.get(own.name).copied().flatten()?;
-            Some(format!("{} {}", own.name, significant(value, 4)))
-        };
-        let sizes: Vec<String> = self.table.suspects.iter().filter_map(one).collect();
+        let shown = findings.would_have_shown.iter();
+        let sizes: Vec<String> = shown
+            .filter_map(|(name, value)| Some(format!("{name} {}", significant((*value)?, 4))))
+            .collect();
         sheet.line(format_args!(
             "  Would have been seen with 90 % probability, from these values on: {}",
             sizes.join(", ")

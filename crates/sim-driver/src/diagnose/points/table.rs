@@ -4,7 +4,7 @@ use crate::files::{Folder, RonIndex, Source, read_ron};
 use crate::problem::{Fault, Place, Problem, Problems};
 use measured_data::{PointColumn, PointCsv, PointData, Scatter};
 use model_gap::points::{
-    Grid, Instrument, Point, PointTable, Suspect, SuspectParameter, channels_of,
+    Grid, Instrument, Point, PointTable, Shown, Suspect, SuspectParameter, channels_of,
 };
 use rotor_base::mean_square;
 use serde::Deserialize;
@@ -401,14 +401,15 @@ impl Reading<'_> {
                         none: effect.none,
                         range: effect.range.unwrap_or((effect.none - wide, effect.none + wide)),
                         tables: vec![table],
+                        shown: Shown::Itself,
                     });
                 }
-                Some(own) if own.tables.len() == 1 && own.tables[0].0 - effect.amount != 0.0 => {
+                Some(own) if own.tables.iter().all(|own| own.0 - effect.amount != 0.0) => {
                     own.tables.push(table);
                 }
                 Some(_) => {
                     let message = format!(
-                        "`{}` of `{}` has this amount already, or two of them: give one or two amounts of a parameter",
+                        "`{}` of `{}` has this amount already: give each amount once",
                         effect.parameter, effect.name
                     );
                     let path = format!("effects[{number}].amount");

@@ -1,0 +1,30 @@
+//! Rotors as data that discovery works on: points of test of a sweep, causes, diagnosis.
+//!
+//! Floor 5: it is handed a case and what was measured, and gives findings back. It knows no file and no terminal.
+//!
+//! | idea | module |
+//! |---|---|
+//! | what a sweep measured, and what its columns mean | `sweep`, `columns` |
+//! | a rotor with its drives and the way its loads are read | `model` |
+//! | that rotor at a point of test | `flight` |
+//! | the cause library: what a rotor may lack | `causes` |
+//! | inputs of a case that are not known well, other levels of fidelity | `spread` |
+//! | a diagnosis | `diagnosis` |
+
+mod causes;
+mod columns;
+mod diagnosis;
+mod error;
+mod flight;
+mod model;
+mod spread;
+mod sweep;
+
+pub use causes::{LIBRARY, RotorCause, RotorParameter};
+pub use columns::{Column, Load, PartOf, Reading, Setting};
+pub use diagnosis::{RotorDiagnosis, RotorQuestion, diagnose};
+pub use error::RotorGapError;
+pub use flight::predict;
+pub use model::{FlapDriveModel, LoadPath, RotorModel};
+pub use spread::{USUAL_UNCERTAIN, alternatives, moved, usual_uncertain};
+pub use sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};

@@ -1,0 +1,136 @@
+//! A rotor with its drives and the way its loads are read: what a cause changes.
+
+use rotor_base::Harmonic;
+use rotor_study::case::Case;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// A rotor as simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorModel {
+    /// The rotor, its flaps and its trim.
+    pub case: Case,
+    /// True rotor speed over the stated one.
+    pub speed: f64,
+    /// True air density over the stated one.
+    pub density: f64,
+    /// Lift slope of the sections over that of the case.
+    pub lift_slope: f64,
+    /// From voltages to the motion of the flaps.
+    pub drive: FlapDriveModel,
+    /// From loads to readings.
+    pub path: LoadPath,
+}
+
+/// From voltages to the motion of the flaps, beside the drive of the case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlapDriveModel {
+    /// Motion over that of the drive of the case.
+    pub gain: f64,
+    /// Part of the difference between an actuator with hysteresis and an ideal one that the motion has.
+    pub hysteresis: f64,
+}
+
+/// From loads to readings.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LoadPath {
+    /// Turn of the hub loads against the drive, deg of azimuth, late positive.
+    pub azimuth_deg: f64,
+    /// Delay of the hub loads, s.
+    pub delay_s: f64,
+    /// Reciprocal of the square of the frequency of the hub on its support, s^2; 0 of a rigid one.
+    pub compliance_s2: f64,
+    /// Damping of that support over critical.
+    pub damping: f64,
+    /// Collective read less the true one, deg.
+    pub collective_deg: f64,
+    /// Gains of instruments that are off, by their names.
+    pub gains: BTreeMap<String, f64>,
+}
+
+impl RotorModel {
+    /// The rotor of a case, driven and read as stated.
+    pub fn of(case: Case) -> Self {
+        Self {
+            case,
+            speed: 1.0,
+            density: 1.0,
+            lift_slope: 1.0,
+            drive: FlapDriveModel { gain: 1.0, hysteresis: 0.0 },
+            path: LoadPath::default(),
+        }
+    }
+
+    /// Whether another one flies alike: it differs in the way loads are read alone.
+    pub fn flies_as(&self, other: &Self) -> bool {
+        let flown = |own: &Self| Self { path: LoadPath::default(), ..own.clone() };
+        flown(self) == flown(other)
+    }
+}
+
+impl Default for LoadPath {
+    fn default() -> Self {
+        Self {
+            azimuth_deg: 0.0,
+            delay_s: 0.0,
+            compliance_s2: 0.0,
+            damping: 0.05,
+            collective_deg: 0.0,
+            gains: BTreeMap::new(),
+        }
+    }
+}
+
+impl LoadPath {
+    /// A hub load as read, at a frequency of `n` times the rotor speed.
+    ///
+    /// ```text
+    /// F_read = F / (1 - r^2 + 2 i zeta r) e^(-i n (dpsi + Omega tau)),   r = n Omega / omega_hub
+    /// ```
+    /// with `F = F_c - i F_s` of `F_c cos n psi + F_s sin n psi`.
+    pub fn read(&self, harmonic: usize, rev_hz: f64, load: Harmonic) -> Harmonic {
+        let n = harmonic as f64;
+        let late = n * (self.azimuth_deg.to_radians() + TAU * rev_hz * self.delay_s);
+        let ratio = n * rev_hz * self.compliance_s2.max(0.0).sqrt();
+        let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * self.damping * ratio);
+        let size = real.hypot(imaginary);
+        let angle = late + imaginary.atan2(real);
+        let (sin, cos) = angle.sin_cos();
+        Harmonic {
+            cosine: (load.cosine * cos - load.sine * sin) / size,
+            sine: (load.sine * cos + load.cosine * sin) / size,
+        }
+    }
+
+    /// The gain of an instrument.
+    pub fn gain(&self, instrument: &str) -> f64 {
+        self.gains.get(instrument).copied().unwrap_or(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A delay of a time turns a harmonic by its frequency times that; a support far above passes all, one far below turns
+    /// the sign.
+    #[test]
+    fn a_load_is_read_late_and_through_the_support() {
+        let load = Harmonic { cosine: 3.0, sine: -1.0 };
+        let at = |path: &LoadPath, psi: f64| {
+            let read = path.read(4, 6.0, load);
+            read.cosine * (4.0 * psi).cos() + read.sine * (4.0 * psi).sin()
+        };
+        let still = |psi: f64| load.cosine * (4.0 * psi).cos() + load.sine * (4.0 * psi).sin();
+        let late = LoadPath { delay_s: 0.002, azimuth_deg: 3.0, ..LoadPath::default() };
+        let by = 3.0_f64.to_radians() + TAU * 6.0 * 0.002;
+        for psi in [0.1, 1.0, 2.5] {
+            assert!((at(&late, psi) - still(psi - by)).abs() < 1e-12);
+        }
+        let soft = LoadPath { compliance_s2: 1.0, damping: 0.0, ..LoadPath::default() };
+        // r = 24: 1 / (1 - 576)
+        assert!((at(&soft, 0.7) + still(0.7) / 575.0).abs() < 1e-12);
+        let stiff = LoadPath { compliance_s2: 1e-12, ..LoadPath::default() };
+        assert!((at(&stiff, 0.7) - still(0.7)).abs() < 1e-4);
+    }
+}

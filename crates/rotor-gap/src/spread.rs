@@ -1,0 +1,162 @@
+//! What a simulation of a rotor is not sure of: inputs of its case, and its own level of fidelity.
+
+use crate::error::RotorGapError;
+use rotor_study::case::{AttachedFlowModel, Case, InflowChoice, ModeNumbers, UncertainField};
+use serde_json::Value;
+
+/// What is taken for uncertain where a case says nothing: field and percent.
+pub const USUAL_UNCERTAIN: [(&str, f64); 6] = [
+    ("rotor.gj", 3.0),
+    ("rotor.ei_flap", 2.0),
+    ("rotor.ei_lag", 2.0),
+    ("rotor.km2_r", 2.0),
+    ("rotor.lock_number", 1.5),
+    ("aerodynamics.drag_coefficient", 10.0),
+];
+
+/// Those that hold where a case says nothing.
+pub fn usual_uncertain() -> Vec<UncertainField> {
+    let one = |(field, percent): &(&str, f64)| UncertainField {
+        field: (*field).to_owned(),
+        sd_percent: Some(*percent),
+        sd: None,
+    };
+    USUAL_UNCERTAIN.iter().map(one).collect()
+}
+
+/// The case with an uncertain field moved by its standard deviation; `number` is its place among them.
+///
+/// # Errors
+/// [`RotorGapError::Uncertain`]: no such field, no number, no standard deviation or two.
+pub fn moved(own: &UncertainField, number: usize, case: &Case) -> Result<Case, RotorGapError> {
+    let refused = |reason: &str| RotorGapError::Uncertain {
+        number,
+        field: own.field.clone(),
+        reason: reason.to_owned(),
+    };
+    let is_good = |sd: &f64| sd.is_finite() && *sd > 0.0;
+    let change = match (own.sd_percent.filter(is_good), own.sd.filter(is_good)) {
+        (Some(percent), None) => Change::Times(1.0 + percent / 100.0),
+        (None, Some(sd)) => Change::Plus(sd),
+        _ => return Err(refused("has no `sd_percent` or `sd` above 0, or both; give one of them")),
+    };
+    let failed = |error: serde_json::Error| refused(&format!("cannot be moved: {error}"));
+    let mut whole = serde_json::to_value(case).map_err(failed)?;
+    let mut parts: Vec<String> = own.field.split('.').map(str::to_owned).collect();
+    // a table stands in place of the uniform value of its name
+    if let [section, name] = &parts[..]
+        && whole.pointer(&format!("/{section}/tables/{name}")).is_some_and(Value::is_array)
+    {
+        parts = vec![section.clone(), "tables".to_owned(), name.clone()];
+    }
+    let place = whole.pointer_mut(&format!("/{}", parts.join("/"))).ok_or_else(|| {
+        refused("is no field of the case that has a value; write it there, or mend the name")
+    })?;
+    if !change.apply(place) {
+        return Err(refused("is no number and no table of numbers"));
+    }
+    let mut moved: Case = serde_json::from_value(whole).map_err(failed)?;
+    // what the text of a case does not hold
+    moved.aerodynamics.tables.clone_from(&case.aerodynamics.tables);
+    Ok(moved)
+}
+
+/// How a value is moved.
+enum Change {
+    Times(f64),
+    Plus(f64),
+}
+
+impl Change {
+    fn of(&self, value: f64) -> f64 {
+        match self {
+            Self::Times(factor) => value * factor,
+            Self::Plus(sd) => value + sd,
+        }
+    }
+
+    /// Moves a number, or the second of every pair of a table; false of anything else.
+    fn apply(&self, place: &mut Value) -> bool {
+        if let Some(value) = place.as_f64() {
+            *place = Value::from(self.of(value));
+            return true;
+        }
+        let Some(rows) = place.as_array_mut().filter(|rows| !rows.is_empty()) else { return false };
+        rows.iter_mut().all(|row| match row.as_array_mut().map(Vec::as_mut_slice) {
+            Some([_, value]) => {
+                let moved = value.as_f64().map(|own| Value::from(self.of(own)));
+                moved.map(|moved| *value = moved).is_some()
+            }
+            _ => false,
+        })
+    }
+}
+
+/// Other levels of fidelity of a case that are thought as good: what they explain is no discovery. Each with its name.
+pub fn alternatives(case: &Case) -> Vec<(&'static str, Case)> {
+    let with = |change: &dyn Fn(&mut Case)| {
+        let mut own = case.clone();
+        change(&mut own);
+        own
+    };
+    let mut all = Vec::new();
+    match case.inflow.model {
+        InflowChoice::Drees => {
+            all.push((
+                "inflow of Pitt and Peters",
+                with(&|c| c.inflow.model = InflowChoice::PittPeters),
+            ));
+        }
+        InflowChoice::PittPeters | InflowChoice::Uniform => {
+            all.push(("inflow of Drees", with(&|c| c.inflow.model = InflowChoice::Drees)));
+        }
+        InflowChoice::FreeWake(_) | InflowChoice::Prescribed { .. } => {}
+    }
+    let other = match case.aerodynamics.model {
+        AttachedFlowModel::HariharanLeishman => AttachedFlowModel::Calibrated,
+        AttachedFlowModel::Incompressible => AttachedFlowModel::QuasiSteady,
+        _ => AttachedFlowModel::HariharanLeishman,
+    };
+    all.push(("sections of other lags", with(&|c| c.aerodynamics.model = other)));
+    let ModeNumbers { flap, lag, torsion } = case.structure.modes;
+    all.push((
+        "one mode more of each kind",
+        with(&|c| {
+            c.structure.modes = ModeNumbers { flap: flap + 1, lag: lag + 1, torsion: torsion + 1 }
+        }),
+    ));
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_field_or_its_table_moves_by_its_deviation() {
+        let case = Case::default();
+        let of = |field: &str, sd_percent, sd| UncertainField {
+            field: field.to_owned(),
+            sd_percent,
+            sd,
+        };
+        let shift = |own: &UncertainField, case: &Case| moved(own, 0, case).unwrap();
+        let changed = shift(&of("rotor.gj", Some(5.0), None), &case);
+        assert!((changed.rotor.gj / case.rotor.gj - 1.05).abs() < 1e-12);
+        let changed = shift(&of("rotor.precone_deg", None, Some(0.1)), &case);
+        assert!((changed.rotor.precone_deg - case.rotor.precone_deg - 0.1).abs() < 1e-12);
+        let mut tabled = case.clone();
+        tabled.rotor.tables.gj = vec![(0.0, 0.006), (1.0, 0.005)];
+        let changed = shift(&of("rotor.gj", Some(5.0), None), &tabled);
+        assert!((changed.rotor.tables.gj[1].1 - 0.00525).abs() < 1e-12);
+        assert!((changed.rotor.gj - case.rotor.gj).abs() < 1e-15);
+        for usual in usual_uncertain() {
+            assert_ne!(shift(&usual, &case), case, "{}", usual.field);
+        }
+        let text = |own: UncertainField| moved(&own, 3, &case).unwrap_err().to_string();
+        assert!(text(of("rotor.gjj", Some(5.0), None)).contains("uncertain[3]: `rotor.gjj`"));
+        assert!(text(of("title", Some(5.0), None)).contains("no number"));
+        assert!(text(of("rotor.gj", None, None)).contains("sd_percent"));
+        assert!(text(of("rotor.gj", Some(-1.0), None)).contains("above 0"));
+    }
+}
