@@ -16,15 +16,17 @@ pub mod problem;
 mod tables;
 
 pub use dataset::{
-    Accuracy, BenchData, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT, DataSet,
-    DatasetFile, DatasetKind, DisplacementAccuracy, Fitting, LoopData, PointColumn, PointData,
-    ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor, SweepData, VoltageAccuracy, read_bench,
-    read_curves, read_dataset, read_loops, read_sweep,
+    Accuracy, BenchData, ChannelAccuracy, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT,
+    DataSet, DatasetFile, DatasetKind, DisplacementAccuracy, EffectFile, EffectTables, Fitting,
+    LoopData, PointColumn, PointData, ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor,
+    SweepData, VoltageAccuracy, read_bench, read_curves, read_dataset, read_effect_tables,
+    read_loops, read_sweep,
 };
 pub use error::DataError;
 pub use files::{
-    Embedded, Folder, RonFile, RonIndex, Source, open_reader, read_ron, refuse_input,
-    refuse_inside, refuse_unwritable, ron_text, write_atomic, write_folder, write_new,
+    Change, Embedded, Folder, RonFile, RonIndex, Source, open_reader, read_ron, refuse_input,
+    refuse_inside, refuse_unwritable, ron_text, with_field_moved, write_atomic, write_folder,
+    write_new,
 };
 pub use tables::{
     Channel, ChannelFile, Channels, ColumnTable, Dimension, MeasuredTable, PointCsv, UNITS, Unit,

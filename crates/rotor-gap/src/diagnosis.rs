@@ -5,8 +5,9 @@ use crate::error::RotorGapError;
 use crate::flight::{Actuators, Flown, grid_of};
 use crate::model::RotorModel;
 use crate::spread::{alternatives, moved};
-use crate::sweep::{Aside, Sweep, SweepChannel};
+use crate::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
 use measured_data::Scatter;
+use model_gap::Effect;
 use model_gap::discovery::Found;
 use model_gap::points::{
     Channel, Grid, Instrument, Point, PointFinding, PointTable, Suspect, SuspectParameter,
@@ -19,9 +20,12 @@ use rotor_study::case::{Case, UncertainField};
 use std::sync::Arc;
 
 /// Rounds in which the effects of what is left are computed anew where they were found.
-const ROUNDS: usize = 2;
-/// Part of its own amount by which a value must move for another round.
+const ROUNDS: usize = 3;
+/// Part of a value by which it must be off those that its effect was computed at.
 const MOVED: f64 = 0.1;
+/// Part of the most that any cause explains alone from which on its effect is computed anew, and the most of these.
+const GOOD_PART: f64 = 0.15;
+const SURVIVORS: usize = 8;
 /// Parts of the difference between the actuators that the lag is listed at.
 const LAG_PARTS: usize = 9;
 /// Part of the prediction that a reading without any misfit is taken to scatter by, where nothing else is known.
@@ -43,8 +47,8 @@ pub struct RotorQuestion<'a> {
     pub sweep: &'a Sweep,
     /// Causes to fit, nothing refused; all are looked for where there is none.
     pub only: &'a [String],
-    /// Hears what is begun, and the share of the work done by then.
-    pub begun: &'a (dyn Fn(f64, &str) + Sync),
+    /// Hears what is begun, and the percent of the work done by then.
+    pub begun: &'a (dyn Fn(usize, &str) + Sync),
 }
 
 /// What was found of a rotor.
@@ -62,6 +66,25 @@ pub struct RotorDiagnosis {
     pub alternatives: Vec<&'static str>,
     /// The case with what was found, if any of it is in a case.
     pub extended: Option<Case>,
+}
+
+impl RotorDiagnosis {
+    /// What a reader should know: inputs taken for uncertain, and where that is said; other levels of fidelity; points set
+    /// aside.
+    pub fn notes(&self, uncertain: &[UncertainField], from: &str) -> Vec<String> {
+        let one = |own: &UncertainField| match (own.sd_percent, own.sd) {
+            (Some(percent), _) => format!("{} {percent} %", own.field),
+            (None, sd) => format!("{} {}", own.field, sd.unwrap_or_default()),
+        };
+        let stated: Vec<String> = uncertain.iter().map(one).collect();
+        let mut notes = vec![format!("uncertain (1 sd, {from}): {}", stated.join(", "))];
+        if !self.alternatives.is_empty() {
+            notes.push(format!("as good: {}", self.alternatives.join(", ")));
+        }
+        let aside = self.aside.iter();
+        notes.extend(aside.map(|own| format!("point {} is {ASIDE}: {}", own.point, own.reason)));
+        notes
+    }
 }
 
 /// Everything that a round needs.
@@ -89,7 +112,7 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         point: "-".to_owned(),
         source: Box::new(source),
     })?;
-    begun(0.0, "the simulation at every point");
+    begun(0, "the simulation at every point");
     let tried: Vec<_> =
         sweep.points.par_iter().map(|point| model.fly(point, &actuators, None)).collect();
     let (mut points, mut flown, mut aside) = (Vec::new(), Vec::new(), Vec::new());
@@ -116,11 +139,11 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         model: &round.model,
         instruments: &round.instruments,
         has_hysteretic: round.actuators.hysteretic.is_some(),
-        is_driven: sweep.points.iter().any(|point| point.is_driven()),
+        is_driven: sweep.points.iter().any(SweepPoint::is_driven),
         lag_deg: &lag_deg,
     });
     let (mut table, alternatives) = round.table(&causes)?;
-    begun(0.9, "search for what is missing");
+    begun(90, "search for what is missing");
     let only = round.only(&causes)?;
     let find = |table: &PointTable| match &only[..] {
         [] => table.find(),
@@ -213,7 +236,7 @@ impl Round<'_> {
         let base = grid_of(&self.flown, model, self.channels(), &self.named, &self.instruments)
             .map_err(|source| self.study_error(0, source))?;
         let begun = question.begun;
-        begun(0.05, "other levels of fidelity");
+        begun(5, "other levels of fidelity");
         let (mut fidelity, mut alternative_grids) = (Vec::new(), Vec::new());
         for (name, case) in alternatives(question.case) {
             // a level that does not fly here tells nothing
@@ -222,7 +245,7 @@ impl Round<'_> {
                 alternative_grids.push(grid);
             }
         }
-        begun(0.15, "inputs that are not known well");
+        begun(15, "inputs that are not known well");
         let uncertain = question.uncertain.iter().enumerate().map(|(number, own)| {
             let case = moved(own, number, question.case)?;
             self.grid(&RotorModel { case, ..model.clone() })
@@ -230,12 +253,8 @@ impl Round<'_> {
         let uncertain = uncertain.collect::<Result<_, _>>()?;
         let mut suspects = Vec::with_capacity(causes.len());
         for (k, cause) in causes.iter().enumerate() {
-            begun(0.25 + 0.65 * k as f64 / causes.len() as f64, cause.id);
-            let t0 = std::time::Instant::now();
+            begun(25 + 65 * k / causes.len(), cause.id);
             suspects.push(self.suspect(cause));
-            if std::env::var("DBG").is_ok() {
-                eprintln!("{} {:?} {:?}", cause.id, t0.elapsed(), suspects[k].blocked);
-            }
         }
         let sweep = question.sweep;
         let deviations: Vec<Vec<f64>> = sweep
@@ -283,7 +302,7 @@ impl Round<'_> {
                 match self.grid(&cause.applied(&self.model, &values)) {
                     Ok(grid) => tables.push((amount, grid)),
                     Err(error) => {
-                        blocked = Some(format!("the rotor with it cannot be flown: {error}"))
+                        blocked = Some(format!("the rotor with it cannot be flown: {error}"));
                     }
                 }
             }
@@ -331,26 +350,28 @@ impl Round<'_> {
         Ok(model_gap::places(&ids, self.question.only)?)
     }
 
-    /// Computes the effects of what was found, and of what it may be instead, where they were found; false where none has
-    /// moved.
+    /// Computes effects anew where they were found: of the causes found, of what may be it instead, and of those that fitted
+    /// alone explain a good part. False where none of them has moved.
     fn refine(&self, causes: &[RotorCause], table: &mut PointTable, found: &PointFinding) -> bool {
+        let finding = &found.finding;
+        let rivals = finding.causes.iter().flat_map(|own: &Found| &own.rivals);
+        let mut effects: Vec<&Effect> = rivals.flat_map(|rival| &rival.effects).collect();
+        let mut singles: Vec<&(Effect, f64)> = finding.singles.iter().flatten().collect();
+        singles.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let most = singles.first().map_or(0.0, |own| own.1);
+        let is_good = |own: &&&(Effect, f64)| own.1 > GOOD_PART * most;
+        effects.extend(singles.iter().filter(is_good).take(SURVIVORS).map(|own| &own.0));
         let mut moved = false;
-        let rivals = found.finding.causes.iter().flat_map(|own: &Found| &own.rivals);
-        for effect in rivals.flat_map(|rival| &rival.effects) {
+        for effect in effects {
             let cause = &causes[effect.candidate];
             for (k, &value) in effect.values.iter().enumerate() {
                 let own = &mut table.suspects[effect.candidate].parameters[k];
                 let Some(size) = own.tables.first().map(|table| (table.0 - own.none).abs()) else {
                     continue;
                 };
-                let nearest = own
-                    .tables
-                    .iter()
-                    .map(|table| table.0)
-                    .chain([own.none])
-                    .map(|at| (value - at).abs())
-                    .fold(f64::INFINITY, f64::min);
-                if nearest <= MOVED * size.min((value - own.none).abs()) {
+                let known = own.tables.iter().map(|table| table.0).chain([own.none]);
+                let nearest = known.map(|at| (value - at).abs()).fold(f64::INFINITY, f64::min);
+                if nearest <= MOVED * size.max((value - own.none).abs()) {
                     continue;
                 }
                 let mut values = cause.none();

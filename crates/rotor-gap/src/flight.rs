@@ -116,7 +116,9 @@ fn density_of(case: &Case) -> f64 {
 
 fn scale_all(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
     *uniform *= factor;
-    table.iter_mut().for_each(|own| own.1 *= factor);
+    for own in table {
+        own.1 *= factor;
+    }
 }
 
 impl RotorModel {

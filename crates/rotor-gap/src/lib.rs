@@ -27,4 +27,4 @@ pub use error::RotorGapError;
 pub use flight::predict;
 pub use model::{FlapDriveModel, LoadPath, RotorModel};
 pub use spread::{USUAL_UNCERTAIN, alternatives, moved, usual_uncertain};
-pub use sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
+pub use sweep::{Aside, Sweep, SweepChannel, SweepPoint};

@@ -1,8 +1,8 @@
 //! What a simulation of a rotor is not sure of: inputs of its case, and its own level of fidelity.
 
 use crate::error::RotorGapError;
+use measured_data::{Change, with_field_moved};
 use rotor_study::case::{AttachedFlowModel, Case, InflowChoice, ModeNumbers, UncertainField};
-use serde_json::Value;
 
 /// What is taken for uncertain where a case says nothing: field and percent.
 pub const USUAL_UNCERTAIN: [(&str, f64); 6] = [
@@ -29,67 +29,26 @@ pub fn usual_uncertain() -> Vec<UncertainField> {
 /// # Errors
 /// [`RotorGapError::Uncertain`]: no such field, no number, no standard deviation or two.
 pub fn moved(own: &UncertainField, number: usize, case: &Case) -> Result<Case, RotorGapError> {
-    let refused = |reason: &str| RotorGapError::Uncertain {
-        number,
-        field: own.field.clone(),
-        reason: reason.to_owned(),
-    };
+    let refused =
+        |reason: String| RotorGapError::Uncertain { number, field: own.field.clone(), reason };
     let is_good = |sd: &f64| sd.is_finite() && *sd > 0.0;
     let change = match (own.sd_percent.filter(is_good), own.sd.filter(is_good)) {
         (Some(percent), None) => Change::Times(1.0 + percent / 100.0),
         (None, Some(sd)) => Change::Plus(sd),
-        _ => return Err(refused("has no `sd_percent` or `sd` above 0, or both; give one of them")),
+        _ => {
+            let reason = "has no `sd_percent` or `sd` above 0, or both; give one of them";
+            return Err(refused(reason.to_owned()));
+        }
     };
-    let failed = |error: serde_json::Error| refused(&format!("cannot be moved: {error}"));
-    let mut whole = serde_json::to_value(case).map_err(failed)?;
-    let mut parts: Vec<String> = own.field.split('.').map(str::to_owned).collect();
     // a table stands in place of the uniform value of its name
-    if let [section, name] = &parts[..]
-        && whole.pointer(&format!("/{section}/tables/{name}")).is_some_and(Value::is_array)
-    {
-        parts = vec![section.clone(), "tables".to_owned(), name.clone()];
-    }
-    let place = whole.pointer_mut(&format!("/{}", parts.join("/"))).ok_or_else(|| {
-        refused("is no field of the case that has a value; write it there, or mend the name")
-    })?;
-    if !change.apply(place) {
-        return Err(refused("is no number and no table of numbers"));
-    }
-    let mut moved: Case = serde_json::from_value(whole).map_err(failed)?;
+    let tabled =
+        own.field.split_once('.').map(|(section, name)| format!("{section}.tables.{name}"));
+    let of_table = tabled.and_then(|path| with_field_moved(case, &path, change).ok());
+    let found = of_table.map_or_else(|| with_field_moved(case, &own.field, change), Ok);
+    let mut moved = found.map_err(refused)?;
     // what the text of a case does not hold
     moved.aerodynamics.tables.clone_from(&case.aerodynamics.tables);
     Ok(moved)
-}
-
-/// How a value is moved.
-enum Change {
-    Times(f64),
-    Plus(f64),
-}
-
-impl Change {
-    fn of(&self, value: f64) -> f64 {
-        match self {
-            Self::Times(factor) => value * factor,
-            Self::Plus(sd) => value + sd,
-        }
-    }
-
-    /// Moves a number, or the second of every pair of a table; false of anything else.
-    fn apply(&self, place: &mut Value) -> bool {
-        if let Some(value) = place.as_f64() {
-            *place = Value::from(self.of(value));
-            return true;
-        }
-        let Some(rows) = place.as_array_mut().filter(|rows| !rows.is_empty()) else { return false };
-        rows.iter_mut().all(|row| match row.as_array_mut().map(Vec::as_mut_slice) {
-            Some([_, value]) => {
-                let moved = value.as_f64().map(|own| Value::from(self.of(own)));
-                moved.map(|moved| *value = moved).is_some()
-            }
-            _ => false,
-        })
-    }
 }
 
 /// Other levels of fidelity of a case that are thought as good: what they explain is no discovery. Each with its name.

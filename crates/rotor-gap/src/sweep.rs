@@ -67,7 +67,7 @@ pub struct Aside {
 }
 
 /// What is said of points set aside.
-pub const ASIDE: &str = "set aside, no trim was found";
+pub(crate) const ASIDE: &str = "set aside, no trim was found";
 
 impl SweepPoint {
     /// Whether a flap is driven.

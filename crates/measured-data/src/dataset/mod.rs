@@ -4,6 +4,7 @@ mod accuracy;
 mod any;
 mod bench;
 mod curves;
+mod effect_tables;
 mod file;
 mod loops;
 mod open;
@@ -16,6 +17,7 @@ pub use any::{DataSet, read_dataset};
 pub use bench::{BenchData, read_bench};
 pub(crate) use bench::{check_bench_record, range_unused};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};
+pub use effect_tables::{ChannelAccuracy, EffectFile, EffectTables, read_effect_tables};
 pub use file::{
     DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, Fitting, RunFile, RunRole, Sensor,
 };

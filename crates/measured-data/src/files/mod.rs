@@ -1,10 +1,12 @@
 //! Files: reading with places, atomic writing, and RON with the place of every field.
 
+mod field;
 mod folder;
 mod ron_index;
 mod ron_read;
 mod write;
 
+pub use field::{Change, with_field_moved};
 pub use folder::{Embedded, Folder, Source, open_reader};
 pub use ron_index::RonIndex;
 pub use ron_read::{RonFile, read_ron, ron_text};

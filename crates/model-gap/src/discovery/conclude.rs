@@ -9,10 +9,10 @@ use super::thresholds::{
     STRAINED_BESIDE, STRONG, WRONG_NAME, least_effect, limit,
 };
 use super::{
-    Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator, StandsOut,
-    Verdict, Yardstick,
+    Alternative, Compared, Confidence, Finding, Found, FoundClass, Reason, Screened, Simulator,
+    StandsOut, Verdict, Yardstick,
 };
-use crate::{Class, GapError, Scale};
+use crate::{Class, Effect, GapError, Scale};
 
 impl<S: Simulator> Search<'_, S> {
     pub(super) fn conclude(
@@ -29,7 +29,9 @@ impl<S: Simulator> Search<'_, S> {
         let mut causes: Vec<Found> = (0..chosen.len())
             .map(|at| self.found(chosen, at, current, singles))
             .collect::<Result<_, GapError>>()?;
-        let ambiguous = causes.iter().any(|c| !c.alternatives.is_empty());
+        // candidates of one name are one cause in another place
+        let is_other = |c: &Found, a: &Alternative| self.id(a.candidate) != self.id(c.candidate);
+        let ambiguous = causes.iter().any(|c| c.alternatives.iter().any(|a| is_other(c, a)));
         let (found, is_wrong) =
             if chosen.is_empty() { (Vec::new(), false) } else { self.shortcomings(current, after) };
         let doubts = !chosen.is_empty() && (!found.is_empty() || looks_like.is_some());
@@ -103,6 +105,7 @@ impl<S: Simulator> Search<'_, S> {
             causes,
             class,
             limits,
+            singles: singles.iter().map(|own| self.single(own.as_ref()?)).collect(),
             effects: current.effects.clone(),
             reasons,
             screen: self.screened.clone(),
@@ -116,6 +119,11 @@ impl<S: Simulator> Search<'_, S> {
             residual_after: current.cleaned(self.evidence),
             held_out_residuals,
         })
+    }
+
+    /// The effect of a candidate fitted alone, with its drop.
+    fn single(&self, fit: &Fitted) -> Option<(Effect, f64)> {
+        Some((fit.effects.last()?.clone(), self.base.cost - fit.cost))
     }
 
     /// Why no run bears a cause out, if there is one such cause; and whether every cause is borne out by runs or parts

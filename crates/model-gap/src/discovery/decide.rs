@@ -75,7 +75,8 @@ impl<'a, S: Simulator> Search<'a, S> {
         let screened = screen(discovery, evidence, &simulator.predict(&[])?, &base.residual)?;
         let thresholds = screened.iter().map(|s| s.threshold).collect();
         let calibrations = discovery.calibrations;
-        let ground = Ground { simulator, candidates, thresholds, calibrations };
+        let yardstick = discovery.settings.yardstick;
+        let ground = Ground { simulator, candidates, thresholds, calibrations, yardstick };
         let folds = Folds::new(evidence, discovery.groups, ground)?;
         let seen = evidence.seen(&structures.iter().collect::<Vec<_>>());
         let energy = |s: &Seen<'_>| evidence.inner(s, s);

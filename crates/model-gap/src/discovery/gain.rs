@@ -43,7 +43,7 @@ pub(super) fn gain<S: Simulator>(
         return Ok(None);
     }
     let fits = [folds.fits(&[])?, folds.fits(&extended.causes())?];
-    let [before, after] = [&fits[0], &fits[1]].map(|own| folds.residual(own));
+    let [before, after] = [&fits[0], &fits[1]].map(|own| folds.residual(own, &fits[1]));
     let mut experiments: Vec<Vec<Block>> = vec![Vec::new(); evidence.experiments];
     for (number, trace) in evidence.of_role(TraceRole::Output) {
         let pairs = before[number].chunks(trace.block).zip(after[number].chunks(trace.block));

@@ -3,7 +3,7 @@
 use super::evidence::{Evidence, as_calibrated, normal_equations, ridged};
 use super::fit::{Fitted, Fitter, Starts, zero_shift};
 use super::thresholds::{FORETOLD_SHARE, KNOWN_SHARE, MOST_FOLDS, PARAMETER_PENALTY};
-use super::{OnlyRun, Signal, Simulator, Trace};
+use super::{OnlyRun, Signal, Simulator, Trace, Yardstick};
 use crate::{Candidate, Effect, GapError, Memo};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -32,13 +32,16 @@ pub(super) struct Ground<'a, S> {
     /// Columns of the nuisance, the last ones, that are calibrations. A prediction takes the channels as they were in
     /// the reference runs: a calibration that is off is for a cause to explain.
     pub(super) calibrations: usize,
+    /// What effects are counted in. In their own starts the nuisance stands for other models and inputs, of which the points
+    /// held out tell as much as the others: it is fitted to all, its cost counts, and the effects alone are held out.
+    pub(super) yardstick: Yardstick,
 }
 
 impl<S> Clone for Ground<'_, S> {
     fn clone(&self) -> Self {
-        let Self { simulator, candidates, thresholds, calibrations } = self;
-        let thresholds = thresholds.clone();
-        Self { simulator, candidates, thresholds, calibrations: *calibrations }
+        let Self { simulator, candidates, thresholds, calibrations, yardstick } = self;
+        let (thresholds, calibrations, yardstick) = (thresholds.clone(), *calibrations, *yardstick);
+        Self { simulator, candidates, thresholds, calibrations, yardstick }
     }
 }
 
@@ -135,14 +138,23 @@ impl<'a, S: Simulator> Folds<'a, S> {
         })
     }
 
-    /// The residual of every experiment under the fit that has not seen it.
-    pub(super) fn residual(&self, fits: &[FoldFit]) -> Signal {
-        let nuisance: Vec<DVector<f64>> = fits
+    /// The residual of every experiment under the fit that has not seen it. Where effects are counted in their own starts
+    /// the nuisance is that of `beside`, fits of the same folds that hold the effects judged.
+    pub(super) fn residual(&self, fits: &[FoldFit], beside: &[FoldFit]) -> Signal {
+        let nuisance_of = |fit: &Fitted, evidence: &Evidence<'_>| match self.ground.yardstick {
+            Yardstick::OutputSpread => {
+                as_calibrated(fit.nuisance(evidence), self.ground.calibrations)
+            }
+            Yardstick::FirstStart => fit.nuisance(evidence),
+        };
+        let whose = match self.ground.yardstick {
+            Yardstick::OutputSpread => fits,
+            Yardstick::FirstStart => beside,
+        };
+        let nuisance: Vec<DVector<f64>> = whose
             .iter()
             .zip(&self.without)
-            .map(|(own, evidence)| {
-                as_calibrated(own.fit.nuisance(evidence), self.ground.calibrations)
-            })
+            .map(|(own, evidence)| nuisance_of(&own.fit, evidence))
             .collect();
         let traces = self.without.first().map_or(&[][..], |own| own.traces);
         let one = |(number, trace): (usize, &Trace)| {
@@ -212,9 +224,29 @@ impl<'a, S: Simulator> Folds<'a, S> {
             return Ok(HeldOut::OneRun(OnlyRun { experiment: run, halves_agree }));
         }
         let left = |causes: &[usize]| -> Result<f64, GapError> {
-            Ok(whole.within_chain(&self.residual(&self.fits(causes)?)))
+            let fits = self.fits(causes)?;
+            Ok(match self.ground.yardstick {
+                Yardstick::OutputSpread => whole.within_chain(&self.residual(&fits, &fits)),
+                Yardstick::FirstStart => self.left_beside_nuisance(whole, &fits),
+            })
         };
         Ok(HeldOut::Drop(left(&causes_before)? - left(&causes)?))
+    }
+
+    /// What fits leave of the experiments that they have not seen, the nuisance fitted to all; with the cost of the nuisance.
+    fn left_beside_nuisance(&self, whole: &Evidence<'_>, fits: &[FoldFit]) -> f64 {
+        let shift = DVector::from_element(1, 1.0);
+        let of_fold = |own: &FoldFit| {
+            let products = whole.products(&[&own.fit.residual]);
+            let nuisance = whole.nuisance_of(&products, &shift);
+            let left = products.iter().enumerate();
+            let left: Vec<f64> =
+                left.map(|(e, own)| whole.left_of(own, &shift, &nuisance, e)).collect();
+            (left, nuisance.norm_squared())
+        };
+        let folds: Vec<(Vec<f64>, f64)> = fits.iter().map(of_fold).collect();
+        let left: f64 = self.of.iter().enumerate().map(|(e, fold)| folds[*fold].0[e]).sum();
+        left + folds.iter().map(|own| own.1).sum::<f64>() / folds.len().max(1) as f64
     }
 
     /// Whether each half of an experiment is foretold by the other, with all other experiments.
@@ -225,7 +257,7 @@ impl<'a, S: Simulator> Folds<'a, S> {
         before: &[usize],
         causes: &[usize],
     ) -> Result<bool, GapError> {
-        let Ground { simulator, candidates, thresholds, calibrations } = &self.ground;
+        let Ground { simulator, candidates, thresholds, calibrations, yardstick } = &self.ground;
         let split = Split {
             whole: *simulator,
             run,
@@ -240,14 +272,15 @@ impl<'a, S: Simulator> Folds<'a, S> {
         };
         let of = (0..evidence.experiments).map(fold).collect();
         let (simulator, thresholds) = (&split, thresholds.iter().map(|t| 0.5 * t).collect());
-        let ground = Ground { simulator, candidates, thresholds, calibrations: *calibrations };
+        let (calibrations, yardstick) = (*calibrations, *yardstick);
+        let ground = Ground { simulator, candidates, thresholds, calibrations, yardstick };
         let halves = Folds::of_folds(&evidence, of, ground)?;
         let fits = halves.fits(causes)?;
         if !fits.iter().all(|own| own.is_known) {
             return Ok(false);
         }
         let left = |causes: &[usize]| -> Result<[f64; 2], GapError> {
-            let residual = halves.residual(&halves.fits(causes)?);
+            let residual = halves.residual(&halves.fits(causes)?, &fits);
             let by_experiment = evidence.energy_by_experiment(&residual);
             Ok([by_experiment[run], by_experiment[whole.experiments]])
         };

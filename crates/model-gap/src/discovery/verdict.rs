@@ -144,6 +144,8 @@ pub struct Finding {
     pub class: Option<FoundClass>,
     /// Size of every candidate, in the yardstick, that these data would have shown with 90 % probability; none of one that they cannot show.
     pub limits: Vec<Option<f64>>,
+    /// Every candidate as fitted alone, its effect and what it takes off chi-square; none of one that promised too little.
+    pub singles: Vec<Option<(Effect, f64)>>,
     /// The effects as fitted together.
     pub effects: Vec<Effect>,
     /// Whether the causes named leave structure that they do not explain.

@@ -3,8 +3,8 @@
 use super::floor::Floor;
 use super::next::{NextPoints, next_points};
 use super::predicted::Tables;
-use super::table::PointTable;
-use crate::discovery::{Discovery, Finding, FittedParameter, Settings, Yardstick};
+use super::table::{PointTable, SuspectParameter};
+use crate::discovery::{Discovery, Finding, FittedParameter, Found, Settings, Yardstick};
 use crate::{Candidate, GapError};
 
 /// What was found at points of test.
@@ -97,12 +97,31 @@ impl PointTable {
         let measured = tables.rows.iter().map(|(p, _)| *p).collect();
         for found in &mut finding.causes {
             self.show(found.candidate, &mut found.parameters);
+            self.widen(found);
             for other in &mut found.alternatives {
                 self.show(other.candidate, &mut other.parameters);
             }
         }
         let model_error = floor.model_error;
         Ok(PointFinding { finding, candidates, measured, gains, model_error, next })
+    }
+
+    /// Lets what only says which suspect it is span those of the same name that do about as well.
+    fn widen(&self, found: &mut Found) {
+        let own = &self.suspects[found.candidate];
+        for other in &found.alternatives {
+            let suspect = &self.suspects[other.candidate];
+            if suspect.name != own.name {
+                continue;
+            }
+            for label in own.parameters.iter().filter(|p| p.tables.is_empty()) {
+                let same = |p: &&SuspectParameter| p.name == label.name && p.tables.is_empty();
+                let place = found.parameters.iter_mut().find(|p| p.name == label.name);
+                if let (Some(there), Some(place)) = (suspect.parameters.iter().find(same), place) {
+                    place.ci95 = [place.ci95[0].min(there.none), place.ci95[1].max(there.none)];
+                }
+            }
+        }
     }
 
     /// Values of parameters as they are reported.

@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const SMOOTH: f64 = 1.0;
 /// Part of what the others do not explain of an alternative left out, in amplitude, by which the truth is taken to lie
 /// beside all of them.
-const LEFT_OUT: f64 = 0.25;
+const LEFT_OUT: f64 = 0.4;
 
 /// The error of the simulation that no alternative holds, by channel and in its unit.
 ///
@@ -138,6 +138,17 @@ impl Floor {
         Ok(Self { sigma, model_error, smooth_error })
     }
 
+    /// Error of the simulation over what it predicts, of the channels of an instrument; no larger than 1.
+    fn relative_error(&self, table: &PointTable, channels: &[usize]) -> f64 {
+        let (mut error, mut size) = (0.0, 0.0);
+        for &c in channels {
+            let predicted: Vec<f64> = table.predicted.iter().map(|row| row[c]).collect();
+            size += rotor_base::mean_square(&predicted);
+            error += self.model_error[c].powi(2);
+        }
+        if size > error { (error / size).sqrt() } else { f64::from(u8::from(error > 0.0)) }
+    }
+
     /// Columns of the nuisance, each as a signal.
     fn nuisance(&self, tables: &Tables<'_>) -> Vec<Signal> {
         let table = tables.table;
@@ -154,9 +165,14 @@ impl Floor {
             }
         }
         for (instrument, channels) in table.instruments.iter().zip(by_instrument(table)) {
-            if instrument.gain > 0.0 {
-                let shape = Shape::Gain(&channels);
-                columns.push(tables.signal(|p, c| instrument.gain * shape.at(table, p, c)));
+            let wrong = self.relative_error(table, &channels);
+            // a simulation that is off by so much may be so by a factor and a turn
+            let turned = Shape::Turned(&channels);
+            let gain = instrument.gain.hypot(wrong);
+            for (shape, size) in [(Shape::Gain(&channels), gain), (turned, wrong)] {
+                if size > 0.0 {
+                    columns.push(tables.signal(|p, c| size * shape.at(table, p, c)));
+                }
             }
             if instrument.zero > 0.0 {
                 for &own in &channels {

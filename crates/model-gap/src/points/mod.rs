@@ -15,9 +15,10 @@ mod names;
 mod next;
 mod predicted;
 mod table;
+mod told;
 
 pub use finding::{ChannelGain, PointFinding};
-pub use names::channels_of;
+pub use names::{channels_of, lasting};
 pub use next::NextPoints;
 pub use table::{
     Channel, Grid, Instrument, Part, Point, PointTable, Shown, Suspect, SuspectParameter,

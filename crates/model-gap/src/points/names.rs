@@ -28,6 +28,11 @@ const UNITS: [(&str, &str); 20] = [
 const COSINE: &str = "_cos";
 const SINE: &str = "_sin";
 
+/// A text as one that lives as long as the program: what names of suspects must.
+pub fn lasting(text: &str) -> &'static str {
+    Box::leak(text.to_owned().into_boxed_str())
+}
+
 /// Channels of column names, and the names of their instruments.
 ///
 /// `fz_n4_cos_N` and `fz_n4_sin_N` are cosine and sine of one harmonic in N, read by one instrument, `fz_n4_N`. A name

@@ -20,8 +20,8 @@ pub(super) fn flap_effectiveness(o: &Occasion<'_>) -> RotorCause {
     let physics = "the flaps make less or more than thin-aerofoil theory says: lift and moment each times a ratio";
     let wide = (0.1, 1.8);
     let parameters = vec![
-        RotorParameter { name: "lift", ..RotorParameter::ratio(0.95, wide) },
-        RotorParameter { name: "moment", ..RotorParameter::ratio(0.95, wide) },
+        RotorParameter { name: "lift", ..RotorParameter::ratio(&[0.95], wide) },
+        RotorParameter { name: "moment", ..RotorParameter::ratio(&[0.95], wide) },
     ];
     RotorCause::new("flap-effectiveness", physics, parameters, |m, v| {
         for flap in &mut m.case.flaps {
@@ -58,7 +58,7 @@ pub(super) fn twist() -> RotorCause {
 
 pub(super) fn lift_slope() -> RotorCause {
     let physics = "the sections lift more or less for their incidence: lift slope times a ratio";
-    let parameters = vec![RotorParameter::ratio(0.97, (0.6, 1.5))];
+    let parameters = vec![RotorParameter::ratio(&[0.97], (0.6, 1.5))];
     RotorCause::new("lift-slope", physics, parameters, |m, v| m.lift_slope *= v[0]).beside(
         &["air-density", "mass"],
         &["the density measured by itself", "the collective at zero thrust"],
@@ -67,7 +67,7 @@ pub(super) fn lift_slope() -> RotorCause {
 
 pub(super) fn drag(o: &Occasion<'_>) -> RotorCause {
     let physics = "the sections have more or less profile drag: its coefficient times a ratio";
-    let parameters = vec![RotorParameter::ratio(1.1, (0.2, 4.0))];
+    let parameters = vec![RotorParameter::ratio(&[1.1], (0.2, 4.0))];
     let has_tables = o.model.case.aerodynamics.tables.is_some();
     RotorCause::new("drag", physics, parameters, |m, v| {
         m.case.aerodynamics.drag_coefficient *= v[0];
@@ -79,9 +79,13 @@ pub(super) fn drag(o: &Occasion<'_>) -> RotorCause {
 pub(super) fn inflow(o: &Occasion<'_>) -> RotorCause {
     let physics = "the inflow model lacks the wake: a part of what a free wake changes";
     let is_wake = matches!(o.model.case.inflow.model, InflowChoice::FreeWake(_));
-    RotorCause::new("inflow", physics, vec![share()], |m, v| {
+    // to tell what it changes, not to settle it
+    let azimuths = Some(4 * o.model.case.rotor.blades.clamp(2, 8));
+    let coarse =
+        FreeWakeValues { azimuths, turns: Some(3), tolerance: 2e-3, ..FreeWakeValues::default() };
+    RotorCause::new("inflow", physics, vec![share()], move |m, v| {
         if v[0] != 0.0 {
-            m.case.inflow.model = InflowChoice::FreeWake(FreeWakeValues::default());
+            m.case.inflow.model = InflowChoice::FreeWake(coarse);
         }
     })
     .blocked_if(is_wake, "the case flies in a free wake already")

@@ -7,16 +7,20 @@ use rotor_fem::Joint;
 use rotor_study::case::{CouplingsChoice, DissimilarBlade};
 
 const STIFF: (f64, f64) = (0.4, 2.0);
+/// A mode near a harmonic answers far from straight: several amounts on both sides.
+const STEPS: [f64; 5] = [1.05, 0.95, 0.85, 1.2, 0.7];
 const SWEEP_OF_SPEED: &[&str] = &["points at other rotor speeds", "blade frequencies at rest"];
 
 fn scale(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
     *uniform *= factor;
-    table.iter_mut().for_each(|own| own.1 *= factor);
+    for own in table {
+        own.1 *= factor;
+    }
 }
 
 pub(super) fn stiffness_flap() -> RotorCause {
     let physics = "the blade bends more or less easily out of the plane: EI_flap times a ratio";
-    let parameters = vec![RotorParameter::ratio(1.05, STIFF)];
+    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
     RotorCause::new("stiffness-flap", physics, parameters, |m, v| {
         scale(&mut m.case.rotor.ei_flap, &mut m.case.rotor.tables.ei_flap, v[0]);
     })
@@ -25,7 +29,7 @@ pub(super) fn stiffness_flap() -> RotorCause {
 
 pub(super) fn stiffness_lag() -> RotorCause {
     let physics = "the blade bends more or less easily in the plane: EI_lag times a ratio";
-    let parameters = vec![RotorParameter::ratio(1.05, STIFF)];
+    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
     RotorCause::new("stiffness-lag", physics, parameters, |m, v| {
         scale(&mut m.case.rotor.ei_lag, &mut m.case.rotor.tables.ei_lag, v[0]);
     })
@@ -34,7 +38,7 @@ pub(super) fn stiffness_lag() -> RotorCause {
 
 pub(super) fn stiffness_torsion() -> RotorCause {
     let physics = "the blade twists more or less easily: GJ times a ratio";
-    let parameters = vec![RotorParameter::ratio(1.05, STIFF)];
+    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
     RotorCause::new("stiffness-torsion", physics, parameters, |m, v| {
         scale(&mut m.case.rotor.gj, &mut m.case.rotor.tables.gj, v[0]);
     })
@@ -79,7 +83,7 @@ pub(super) fn pitch_link(o: &Occasion<'_>) -> RotorCause {
 /// The stiffnesses are over the mass, and so is the Lock number.
 pub(super) fn mass() -> RotorCause {
     let physics = "the blades are heavier or lighter: mass per length times a ratio";
-    let parameters = vec![RotorParameter::ratio(1.03, (0.7, 1.4))];
+    let parameters = vec![RotorParameter::ratio(&[1.03, 0.95, 1.1], (0.7, 1.4))];
     RotorCause::new("mass", physics, parameters, |m, v| {
         let r = &mut m.case.rotor;
         let lighter = 1.0 / v[0];
@@ -146,7 +150,8 @@ pub(super) fn blade_dissimilarity(o: &Occasion<'_>) -> Vec<RotorCause> {
     let told: &[&str] = &["gauges on every blade", "blades exchanged", "track"];
     let each = (1..=o.model.case.rotor.blades).flat_map(|blade| {
         let label = RotorParameter::label("blade", blade as f64);
-        let mass = RotorParameter { name: "mass_ratio", ..RotorParameter::ratio(1.01, (0.8, 1.2)) };
+        let mass =
+            RotorParameter { name: "mass_ratio", ..RotorParameter::ratio(&[1.01], (0.8, 1.2)) };
         let pitch = RotorParameter::both_ways("pitch_deg", "deg", &[0.1], 1.5);
         let heavier = RotorCause::new(
             "blade-dissimilarity",

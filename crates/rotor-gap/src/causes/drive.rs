@@ -27,7 +27,7 @@ pub(super) fn actuator_hysteresis(o: &Occasion<'_>) -> RotorCause {
 
 pub(super) fn actuator_gain(o: &Occasion<'_>) -> RotorCause {
     let physics = "the flaps move more or less than the drive says: motion times a ratio";
-    let parameters = vec![RotorParameter::ratio(0.95, (0.0, 2.5))];
+    let parameters = vec![RotorParameter::ratio(&[0.95], (0.0, 2.5))];
     RotorCause::new("actuator-gain", physics, parameters, |m, v| m.drive.gain *= v[0])
         .beside(&["flap-effectiveness"], &["the motion of the flaps measured"])
         .exact_to(0.02)

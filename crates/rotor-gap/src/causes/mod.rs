@@ -62,10 +62,10 @@ pub struct RotorParameter {
 }
 
 impl RotorParameter {
-    /// A factor, 1 as it is, whose effect is computed at one amount.
-    pub(crate) fn ratio(amount: f64, range: (f64, f64)) -> Self {
+    /// A factor, 1 as it is, whose effect is computed at some amounts.
+    pub(crate) fn ratio(amounts: &[f64], range: (f64, f64)) -> Self {
         let (name, unit, none) = ("ratio", "1", 1.0);
-        Self { name, unit, none, range, amounts: vec![amount], shown: Shown::Itself }
+        Self { name, unit, none, range, amounts: amounts.to_vec(), shown: Shown::Itself }
     }
 
     /// A value, 0 as it is, from minus to plus a limit.
@@ -259,7 +259,7 @@ mod tests {
                     );
                 }
             }
-            for alike in own.confused_with.iter() {
+            for alike in own.confused_with {
                 assert!(LIBRARY.contains(alike), "{}: {alike}", own.id);
             }
         }

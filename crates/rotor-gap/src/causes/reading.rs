@@ -1,7 +1,7 @@
 //! What the way of the loads to the readings may lack.
 
 use super::{Occasion, RotorCause, RotorParameter};
-use model_gap::points::Shown;
+use model_gap::points::{Shown, lasting};
 
 /// Error of form of what turns and scales readings: none but rounding and what the sampling does.
 const EXACT: f64 = 0.005;
@@ -59,13 +59,10 @@ pub(super) fn channel_delay() -> RotorCause {
 pub(super) fn sensor_gains(o: &Occasion<'_>) -> Vec<RotorCause> {
     let one = |name: &String| {
         let instrument = name.clone();
-        let physics: &'static str = Box::leak(
-            format!(
-                "the instrument {name} reads its channels times a ratio; -1 is a reversed sign"
-            )
-            .into_boxed_str(),
-        );
-        let parameters = vec![RotorParameter::ratio(1.05, (-2.0, 4.0))];
+        let physics = lasting(&format!(
+            "the instrument {name} reads its channels times a ratio; -1 is a reversed sign"
+        ));
+        let parameters = vec![RotorParameter::ratio(&[1.05], (-2.0, 4.0))];
         RotorCause::new("sensor-gain", physics, parameters, move |m, v| {
             if v[0] - 1.0 != 0.0 {
                 *m.path.gains.entry(instrument.clone()).or_insert(1.0) *= v[0];

@@ -10,8 +10,8 @@ use rotor_study::case::{
     Case, ControlValues, DissimilarBlade, EffectivenessValues, Field, FlapValues, FreeWakeValues,
     HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile, MeasuredFiles, MeasuredSection,
     ModeNumbers, PitchHarmonic, PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range,
-    ResponseValues, RotorValues, Section, StructureValues, ToleranceValues, Value, Visitor,
-    WindTunnelTrim,
+    ResponseValues, RotorValues, Section, StructureValues, ToleranceValues, UncertainField, Value,
+    Visitor, WindTunnelTrim,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -60,6 +60,7 @@ fn tables() -> String {
         table::<MeasuredFiles>("measured"),
         table::<MeasuredSection>("measured.airloads"),
         table::<MeasuredFile>("measured.tip, measured.vortex_centres"),
+        table::<UncertainField>("uncertain"),
     ]
     .concat()
 }

@@ -77,7 +77,7 @@ fn rotor(
     let case = load_case(case)?;
     warn(&sweep.warnings, form);
     let progress = Progress::new(DIAGNOSIS);
-    let begun = |share: f64, what: &str| progress.begin((DIAGNOSIS as f64 * share) as usize, what);
+    let begun = |percent: usize, what: &str| progress.begin(DIAGNOSIS * percent / 100, what);
     let found = RotorPoints::of(&case, sweep, &args.only, &begun);
     progress.finish();
     let found = found?;

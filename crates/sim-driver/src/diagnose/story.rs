@@ -5,7 +5,7 @@ use super::{Diagnosis, Findings};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, table, table_of};
 use model_gap::Candidate;
-use model_gap::discovery::{Confidence, Found, Verdict};
+use model_gap::discovery::{Confidence, Found, Screened, Verdict};
 use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
@@ -56,7 +56,8 @@ impl Printable for Story<'_> {
         base(d, &mut sheet);
         accuracy(d, &mut sheet);
         energies(d, &mut sheet);
-        screening(d, &mut sheet);
+        sheet.line("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach");
+        sheet.block(&screening(&d.candidates, &d.finding.screen));
         sheet.line(format_args!("\n{}", verdict_line(d, findings)));
         causes(d, &mut sheet);
         seen(findings, &mut sheet);
@@ -165,14 +166,13 @@ fn energies(d: &Diagnosis, sheet: &mut Sheet) {
     ));
 }
 
-/// What each cause could explain.
-fn screening(d: &Diagnosis, sheet: &mut Sheet) {
-    sheet.line("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach");
-    let ratio = |c: usize| d.finding.screen[c].score / d.finding.screen[c].threshold.max(1e-9);
-    let mut order: Vec<usize> = (0..d.candidates.len()).collect();
+/// What each cause could explain, the strongest first.
+pub(super) fn screening(candidates: &[Candidate], screened: &[Screened]) -> String {
+    let ratio = |c: usize| screened[c].score / screened[c].threshold.max(1e-9);
+    let mut order: Vec<usize> = (0..candidates.len()).collect();
     order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
     let rows = order.iter().map(|&c| {
-        let (candidate, s) = (&d.candidates[c], &d.finding.screen[c]);
+        let (candidate, s) = (&candidates[c], &screened[c]);
         let name = candidate.id;
         if let Some(why) = &candidate.blocked {
             return vec![name.to_owned(), "-".into(), "-".into(), "-".into(), why.clone()];
@@ -184,11 +184,11 @@ fn screening(d: &Diagnosis, sheet: &mut Sheet) {
         };
         let alike = s
             .most_confused
-            .map_or_else(String::new, |(b, cosine)| format!("{} {cosine:+.2}", d.candidates[b].id));
+            .map_or_else(String::new, |(b, cosine)| format!("{} {cosine:+.2}", candidates[b].id));
         let [score, floor] = [s.score, s.threshold].map(|drop| format!("{drop:.0}"));
         vec![format!("{name}{mark}"), score, floor, format!("{:.1}", 100.0 * s.absorbed), alike]
     });
-    sheet.block(&table(&["cause", "score", "floor", "absorbed %", "most alike"], rows));
+    table(&["cause", "score", "floor", "absorbed %", "most alike"], rows)
 }
 
 /// The causes named, and the reasons of the verdict.

@@ -1,9 +1,10 @@
 //! Static curves of a section.
 
-use super::{SectionChoice, SectionTable, stall_remark, within, within_points};
+use super::{SectionChoice, SectionTable};
 use crate::SimError;
 use crate::files::{Folder, Source, airfoil_text, read_airfoil};
 use flap_aero::{C81Airfoil, StallAirfoil, StallSection, steady_response};
+use section_study::{stall_remark, within, within_points};
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
@@ -57,7 +58,7 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
         });
     }
     let (section, mach, flap) = question.section.coefficients()?;
-    let mut remarks = question.section.remarks(&section.remarks, None);
+    let mut remarks = question.section.remarks_at_rest(&section.remarks);
     remarks.extend(question.stall.and_then(|airfoil| stall_remark(airfoil, mach.value())));
     let stalling = match question.stall {
         Some(airfoil) => Some((airfoil, StallSection::new(mach, flap, airfoil.parameters(mach))?)),

@@ -10,6 +10,7 @@ mod identify;
 mod import;
 mod measured;
 mod place;
+mod points;
 mod rotor;
 mod screen;
 mod stages_doc;

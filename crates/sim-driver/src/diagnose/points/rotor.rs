@@ -10,14 +10,12 @@ use crate::problem::{Fault, Place, Problem};
 use measured_data::SweepData;
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
-use rotor_gap::{RotorGapError, RotorQuestion, Sweep, diagnose, usual_uncertain};
+use rotor_gap::{RotorGapError, RotorQuestion, Sweep, SweepPoint, diagnose, usual_uncertain};
 use rotor_study::case::ActuatorChoice;
 use std::sync::Arc;
 
 /// Name of the case that a diagnosis extended.
 const EXTENDED_CASE_FILE: &str = "extended_case.ron";
-/// Kind of the data.
-const ROTOR_SWEEP: &str = "RotorSweep";
 
 /// A rotor with what was found of it.
 pub struct RotorPoints {
@@ -30,7 +28,7 @@ pub struct RotorPoints {
 }
 
 impl RotorPoints {
-    /// Diagnoses the sweep of a rotor. `begun` hears the share of the work done and what is begun.
+    /// Diagnoses the sweep of a rotor. `begun` hears the percent of the work done and what is begun.
     ///
     /// # Errors
     /// A column that is not known, at its place; an uncertain field, at its place in the case; the engine.
@@ -38,12 +36,12 @@ impl RotorPoints {
         case: &LoadedCase,
         data: &SweepData,
         only: &[String],
-        begun: &(dyn Fn(f64, &str) + Sync),
+        begun: &(dyn Fn(usize, &str) + Sync),
     ) -> Result<Self, SimError> {
         let located = |error| located(case, data, error);
         let sweep = Sweep::of(&data.points, &case.case).map_err(located)?;
         let actuator = case_actuators(case)?.real.map(Arc::new);
-        let is_driven = sweep.points.iter().any(|point| point.is_driven());
+        let is_driven = sweep.points.iter().any(SweepPoint::is_driven);
         let is_ideal = case.case.actuator.model == ActuatorChoice::Ideal;
         let hysteretic = if is_driven && is_ideal { Some(shipped_actuator()?) } else { None };
         let usual = usual_uncertain();
@@ -59,33 +57,17 @@ impl RotorPoints {
             begun,
         };
         let found = diagnose(&question).map_err(located)?;
-        let mut notes = Vec::new();
-        let stated: Vec<String> = uncertain
-            .iter()
-            .map(|own| match (own.sd_percent, own.sd) {
-                (Some(percent), _) => format!("{} {percent} %", own.field),
-                (None, sd) => format!("{} {}", own.field, sd.unwrap_or_default()),
-            })
-            .collect();
         let from = if is_stated {
             "the case"
         } else {
             "the usual of a rotor; `uncertain` of the case says others"
         };
-        notes.push(format!("uncertain (1 sd, {from}): {}", stated.join(", ")));
-        if !found.alternatives.is_empty() {
-            notes.push(format!("as good: {}", found.alternatives.join(", ")));
-        }
-        for own in &found.aside {
-            notes.push(format!(
-                "point {} is set aside, no trim was found: {}",
-                own.point, own.reason
-            ));
-        }
+        let notes = found.notes(uncertain, from);
         let extended = found.extended.as_ref().map(ron_text).transpose();
         let extended = extended.map_err(|e| SimError::not_written(EXTENDED_CASE_FILE, &e))?;
         let (title, table) = (data.title.clone(), found.table);
-        let diagnosis = PointDiagnosis { title, data_kind: ROTOR_SWEEP, table, found: found.found };
+        let diagnosis =
+            PointDiagnosis { title, data_kind: "RotorSweep", table, found: found.found };
         Ok(Self { diagnosis, notes, extended })
     }
 

@@ -1,16 +1,14 @@
 //! What the terminal and the files say of points of test.
 
 use crate::SimError;
-use crate::diagnose::story::{one_of, sure, valued};
+use crate::diagnose::story::{one_of, screening, sure, valued};
 use crate::files::significant;
-use crate::output::{Printable, Sheet, json, table, table_of};
+use crate::output::{Printable, Sheet, json, table_of, unique};
 use crate::problem::Place;
 use model_gap::discovery::{Found, Verdict};
-use model_gap::points::{ChannelGain, NextPoints, PointFinding, PointTable};
-use model_gap::{ChannelGainValue, Findings, GapError, Told, places};
+use model_gap::points::{ChannelGain, PointFinding, PointTable};
+use model_gap::{Findings, GapError, places};
 use serde::Serialize;
-use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// Rows of a table on the first screen.
 const SHOWN: usize = 6;
@@ -57,60 +55,7 @@ impl PointDiagnosis {
 
     /// The findings, as other programs read them.
     pub fn findings(&self) -> Findings {
-        let PointFinding { finding, candidates, measured, gains, next, .. } = &self.found;
-        let runs: Vec<String> = measured.iter().map(|&p| self.table.points[p].id.clone()).collect();
-        let told = Told {
-            finding,
-            candidates,
-            runs: &runs,
-            data_kind: self.data_kind,
-            gain_unit: "standard deviations".to_owned(),
-            next_experiment: next.as_ref().map(|own| self.next_points(own)).unwrap_or_default(),
-        };
-        let mut findings = told.findings();
-        findings.would_have_shown = self.limits();
-        findings.gain_by_channel = gains.iter().map(|own| self.gain_of(own)).collect();
-        findings
-    }
-
-    /// Value of the first parameter of each suspect from which on it would have been seen; of several of one name that which
-    /// is seen first.
-    fn limits(&self) -> BTreeMap<String, Option<f64>> {
-        let mut best: BTreeMap<String, (f64, Option<f64>)> = BTreeMap::new();
-        for (own, limit) in self.table.suspects.iter().zip(&self.found.finding.limits) {
-            let first = own.parameters.first().zip(*limit);
-            let value = first.and_then(|(p, limit)| {
-                let amount = p.tables.first()?.0;
-                Some(p.shown.of(p.none + limit * (amount - p.none)))
-            });
-            let limit = limit.unwrap_or(f64::INFINITY);
-            let kept = best.entry(own.name.to_owned()).or_insert((f64::INFINITY, None));
-            if limit < kept.0 {
-                *kept = (limit, value);
-            }
-        }
-        best.into_iter().map(|(name, (_, value))| (name, value)).collect()
-    }
-
-    fn gain_of(&self, own: &ChannelGain) -> ChannelGainValue {
-        let channel = &self.table.channels[own.channel];
-        ChannelGainValue {
-            channel: channel.name.clone(),
-            unit: channel.unit.clone(),
-            heldout_rms_before: own.rms_before,
-            heldout_rms_after: own.rms_after,
-            in_deviations: own.in_deviations,
-        }
-    }
-
-    /// The points advised, by name.
-    fn next_points(&self, next: &NextPoints) -> String {
-        let name = |&p: &usize| {
-            let point = &self.table.points[p];
-            let again = if point.is_measured() { " again" } else { "" };
-            format!("point {}{again}", point.id)
-        };
-        next.points.iter().map(name).collect::<Vec<_>>().join(", ")
+        self.found.findings(&self.table, self.data_kind)
     }
 
     /// Files to write: findings, and the readings with what is simulated before and after.
@@ -118,38 +63,9 @@ impl PointDiagnosis {
     /// # Errors
     /// [`SimError::Data`] if JSON cannot express the findings.
     pub fn files(&self) -> Result<Vec<(String, String)>, SimError> {
+        let residuals = self.found.residuals_csv(&self.table);
         let findings = json(&self.findings())?;
-        Ok(vec![
-            ("findings.json".to_owned(), findings),
-            ("residuals.csv".to_owned(), self.residuals()),
-        ])
-    }
-
-    /// One row for each reading: measured, simulated, deviation, and measured less simulated before and after over it.
-    fn residuals(&self) -> String {
-        let mut text =
-            String::from("point,channel,measured,simulated,sd,residual_sd,residual_after_sd\n");
-        let finding = &self.found.finding;
-        let pairs = finding.residual_before.iter().zip(&finding.residual_after);
-        for (&p, (before, after)) in self.found.measured.iter().zip(pairs) {
-            let point = &self.table.points[p];
-            let read =
-                point.measured.iter().enumerate().filter_map(|(c, value)| Some((c, (*value)?)));
-            for ((c, value), (before, after)) in read.zip(before.iter().zip(after)) {
-                let [simulated, deviation] = [self.table.predicted[p][c], point.deviation[c]];
-                let name = &self.table.channels[c].name;
-                let short = |value: f64| significant(value, 5);
-                // writing to a String cannot fail
-                let _ = writeln!(
-                    text,
-                    "{},{name},{value},{simulated},{deviation},{},{}",
-                    point.id,
-                    short(*before),
-                    short(*after)
-                );
-            }
-        }
-        text
+        Ok(vec![("findings.json".to_owned(), findings), ("residuals.csv".to_owned(), residuals)])
     }
 
     /// The verdict in words.
@@ -172,6 +88,7 @@ impl PointDiagnosis {
                 let one = |found: &Found| {
                     let mut ids = vec![self.id(found.candidate)];
                     ids.extend(found.alternatives.iter().map(|other| self.id(other.candidate)));
+                    let ids = unique(ids);
                     one_of(&ids)
                 };
                 let sets: Vec<String> = finding.causes.iter().map(one).collect();
@@ -188,8 +105,7 @@ impl PointDiagnosis {
     fn causes(&self, sheet: &mut Sheet) {
         for found in &self.found.finding.causes {
             let cause = &self.found.candidates[found.candidate];
-            let colon = if cause.physics.is_empty() { "" } else { ": " };
-            sheet.line(format_args!("  {}{colon}{}", cause.id, cause.physics));
+            sheet.line(format_args!("  {}: {}", cause.id, cause.physics));
             for own in found.parameters.iter().filter(|own| !own.is_shape) {
                 sheet.line(format_args!("    {}", valued(own.name, own.value, own.unit, own.ci95)));
             }
@@ -223,10 +139,9 @@ impl PointDiagnosis {
         let fall = |own: &ChannelGain| own.in_deviations[0] - own.in_deviations[1];
         let mut order: Vec<&ChannelGain> = gains.iter().collect();
         order.sort_by(|a, b| fall(b).total_cmp(&fall(a)));
-        order.truncate(most);
         sheet.line("\nError on points held out, rms");
         sheet.block(&table_of(
-            &order,
+            &order[..most.min(order.len())],
             &[
                 ("channel", &|own| self.table.channels[own.channel].name.clone()),
                 ("before", &|own| significant(own.rms_before, 3).to_string()),
@@ -243,7 +158,7 @@ impl PointDiagnosis {
     /// What to measure next.
     fn next(&self, sheet: &mut Sheet) {
         let Some(next) = &self.found.next else { return };
-        sheet.line(format_args!("Measure next: {}", self.next_points(next)));
+        sheet.line(format_args!("Measure next: {}", next.in_words(&self.table)));
         let open: Vec<&str> = next.open.iter().map(|&c| self.id(c)).collect();
         let told = if next.told_apart >= 1.0 {
             "it would tell them apart".to_owned()
@@ -256,21 +171,6 @@ impl PointDiagnosis {
             )
         };
         sheet.line(format_args!("  open: {}; {told}", open.join(", ")));
-    }
-
-    /// What would have been seen, where nothing is missing.
-    fn seen(&self, findings: &Findings, sheet: &mut Sheet) {
-        if findings.verdict != Verdict::NothingMissing {
-            return;
-        }
-        let shown = findings.would_have_shown.iter();
-        let sizes: Vec<String> = shown
-            .filter_map(|(name, value)| Some(format!("{name} {}", significant((*value)?, 4))))
-            .collect();
-        sheet.line(format_args!(
-            "  Would have been seen with 90 % probability, from these values on: {}",
-            sizes.join(", ")
-        ));
     }
 
     /// What it rests on.
@@ -298,33 +198,21 @@ impl PointDiagnosis {
             );
         }
     }
+}
 
-    /// What each suspect could explain.
-    fn screening(&self, sheet: &mut Sheet) {
-        sheet.line("\nScreening: drop of chi-square that each suspect could bring, and the floor");
-        let finding = &self.found.finding;
-        let ratio = |c: usize| finding.screen[c].score / finding.screen[c].threshold.max(1e-9);
-        let mut order: Vec<usize> = (0..self.found.candidates.len()).collect();
-        order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
-        let rows = order.iter().map(|&c| {
-            let s = &finding.screen[c];
-            if let Some(why) = &self.found.candidates[c].blocked {
-                return vec![
-                    self.id(c).to_owned(),
-                    "-".into(),
-                    "-".into(),
-                    "-".into(),
-                    why.clone(),
-                ];
-            }
-            let alike = s.most_confused.map(|(b, cosine)| format!("{} {cosine:+.2}", self.id(b)));
-            let numbers = [s.score, s.threshold].map(|drop| format!("{drop:.0}"));
-            let [score, floor] = numbers;
-            let absorbed = format!("{:.0}", 100.0 * s.absorbed);
-            vec![self.id(c).to_owned(), score, floor, absorbed, alike.unwrap_or_default()]
-        });
-        sheet.block(&table(&["suspect", "score", "floor", "absorbed %", "most alike"], rows));
+/// What would have been seen, where nothing is missing.
+fn seen(findings: &Findings, sheet: &mut Sheet) {
+    if findings.verdict != Verdict::NothingMissing {
+        return;
     }
+    let shown = findings.would_have_shown.iter();
+    let sizes: Vec<String> = shown
+        .filter_map(|(name, value)| Some(format!("{name} {}", significant((*value)?, 4))))
+        .collect();
+    sheet.line(format_args!(
+        "  Would have been seen with 90 % probability, from these values on: {}",
+        sizes.join(", ")
+    ));
 }
 
 /// A diagnosis of points, printable.
@@ -345,7 +233,7 @@ impl<'a> PointStory<'a> {
     fn told(&self, most: usize) -> Sheet {
         let mut sheet = Sheet::default();
         self.own.causes(&mut sheet);
-        self.own.seen(&self.findings, &mut sheet);
+        seen(&self.findings, &mut sheet);
         self.own.gains(most, &mut sheet);
         self.own.next(&mut sheet);
         sheet.line("");
@@ -367,7 +255,9 @@ impl Printable for PointStory<'_> {
         let mut sheet = Sheet::default();
         sheet.line(self.own.verdict());
         sheet.block(&self.told(usize::MAX).finish());
-        self.own.screening(&mut sheet);
+        sheet.line("\nScreening: drop of chi-square that each suspect could bring, and the floor");
+        let found = &self.own.found;
+        sheet.block(&screening(&found.candidates, &found.finding.screen));
         sheet.finish()
     }
 }

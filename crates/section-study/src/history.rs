@@ -3,10 +3,9 @@
 use super::{
     FASTEST, MOST_POINTS, Moved, SectionChoice, SectionTable, stall_remark, within, within_points,
 };
-use crate::SimError;
 use flap_aero::{
-    CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallAirfoil, StallSection,
-    StallState, periodic_state,
+    AeroError, CycleStep, MarchingSection, Motion, SectionInputs, SectionState, StallAirfoil,
+    StallSection, StallState, periodic_state,
 };
 use std::f64::consts::TAU;
 
@@ -118,7 +117,7 @@ fn inputs(motion: Motion, value: f64, rate: f64) -> SectionInputs {
 /// `distance`: what is shown, semichords, in `points` rows after the first.
 ///
 /// # Errors
-/// [`SimError::Section`] for a section outside its model, a distance that is not positive, or no
+/// [`AeroError`] for a section outside its model, a distance that is not positive, or no
 /// points.
 pub fn transient_history(
     choice: &SectionChoice,
@@ -126,7 +125,7 @@ pub fn transient_history(
     rise: f64,
     distance: f64,
     points: usize,
-) -> Result<SectionTable, SimError> {
+) -> Result<SectionTable, AeroError> {
     let fits = distance > 0.0 && distance <= LONGEST;
     within("distance, semichords", distance, fits, "above 0, to 1e6")?;
     let fits = rise == 0.0 || (SLOWEST..=LONGEST).contains(&rise);
@@ -189,9 +188,9 @@ pub fn transient_history(
 /// One cycle of a motion that has repeated for ever.
 ///
 /// # Errors
-/// [`SimError::Section`] for a section outside its model or a number outside its range; also if a
+/// [`AeroError`] for a section outside its model or a number outside its range; also if a
 /// stalled loop does not repeat within sixty cycles.
-pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
+pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, AeroError> {
     let LoopQuestion { motion, mean_rad, amplitude_rad, reduced_frequency: k, points, .. } =
         *question;
     within("reduced frequency", k, (SLOWEST..=FASTEST).contains(&k), "1e-6 to 1000")?;
@@ -214,7 +213,7 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     let Some(airfoil) = question.stall else {
         let march = |step: &SectionInputs| Ok(state.step(&section, step, cycle.ds)?.to_vec());
         let loads: Vec<Vec<f64>> =
-            cycle.inputs.iter().map(march).collect::<Result<_, SimError>>()?;
+            cycle.inputs.iter().map(march).collect::<Result<_, AeroError>>()?;
         return Ok(SectionTable {
             title: title(question, "attached flow"),
             remarks,
@@ -253,7 +252,7 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, SimError> {
     }
     let quantity = "number of cycles without repetition of the stalled loop";
     let (value, expected) = (cycles as f64, "a loop that repeats; choose another frequency");
-    Err(flap_aero::AeroError::BadInput { quantity, value, expected }.into())
+    Err(AeroError::BadInput { quantity, value, expected })
 }
 
 /// The whole part of a number of cycles.

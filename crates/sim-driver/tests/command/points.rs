@@ -1,0 +1,204 @@
+//! `hhc diagnose` on points of test: tables of anyone's simulator, and sweeps of a rotor.
+
+use crate::place::Place;
+use std::fmt::Write;
+
+const COLUMNS: [&str; 4] = ["x1_cos_um", "x1_sin_um", "x2_cos_um", "x2_sin_um"];
+/// Standard deviations of the columns, um.
+const DEVIATION: [f64; 4] = [8.0, 8.0, 4.0, 4.0];
+
+/// What a shaker of two masses may have: springs, dampers and mass of the first over the nominal, delay (s).
+#[derive(Clone, Copy)]
+struct Shaker {
+    spring: f64,
+    damper: f64,
+    mass: f64,
+    delay_s: f64,
+}
+
+const NOMINAL: Shaker = Shaker { spring: 1.0, damper: 1.0, mass: 1.0, delay_s: 0.0 };
+
+impl Shaker {
+    /// Cosine and sine of both masses under a force of 100 N, um: Cramer's rule on the equations of motion.
+    fn at(self, hz: f64) -> [f64; 4] {
+        let w = std::f64::consts::TAU * hz;
+        let (k1, c1, m1) = (4e4 * self.spring, 20.0 * self.damper, self.mass);
+        let a = [k1 - w * w * m1, w * c1];
+        let b = [-k1, -w * c1];
+        let d = [k1 + 1e5 - 3.0 * w * w, w * (c1 + 40.0)];
+        let times =
+            |x: [f64; 2], y: [f64; 2]| [x[0] * y[0] - x[1] * y[1], x[0] * y[1] + x[1] * y[0]];
+        let (ad, bb) = (times(a, d), times(b, b));
+        let det = [ad[0] - bb[0], ad[1] - bb[1]];
+        let over = |x: [f64; 2]| {
+            let size = det[0] * det[0] + det[1] * det[1];
+            let x = times(x, [det[0], -det[1]]);
+            // late: turned back by the frequency times the delay
+            let late = times(x, [(w * self.delay_s).cos(), -(w * self.delay_s).sin()]);
+            late.map(|part| 100.0 * 1e6 * part / size)
+        };
+        let ([c1, s1], [c2, s2]) = (over([-b[0], -b[1]]), over(a));
+        [c1, -s1, c2, -s2]
+    }
+}
+
+fn frequencies() -> Vec<f64> {
+    (0..26).map(|k| 10.0 + 1.5 * f64::from(k)).collect()
+}
+
+/// A table of a shaker, with noise and its deviations where it is measured.
+fn table(of: Shaker, noise: Option<u64>) -> String {
+    let mut text = format!("frequency_Hz,{}", COLUMNS.join(","));
+    if noise.is_some() {
+        for name in COLUMNS {
+            write!(text, ",{name}_sd").unwrap();
+        }
+    }
+    let mut state = noise.unwrap_or_default();
+    // sum of twelve uniform numbers less six: variance 1
+    let mut normal = || {
+        let uniform = |_| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(uniform).sum::<f64>() - 6.0
+    };
+    for hz in frequencies() {
+        write!(text, "\n{hz}").unwrap();
+        for (value, deviation) in of.at(hz).into_iter().zip(DEVIATION) {
+            let off = if noise.is_some() { deviation * normal() } else { 0.0 };
+            write!(text, ",{}", value + off).unwrap();
+        }
+        if noise.is_some() {
+            for own in DEVIATION {
+                write!(text, ",{own}").unwrap();
+            }
+        }
+    }
+    text + "\n"
+}
+
+/// A folder of tables; `truth` is measured.
+fn folder(truth: Shaker, seed: u64) -> Place {
+    let place = Place::new();
+    place.write("t/measured.csv", &table(truth, Some(seed)));
+    place.write("t/predicted.csv", &table(NOMINAL, None));
+    place.write("t/effect_spring.csv", &table(Shaker { spring: 1.03, ..NOMINAL }, None));
+    place.write("t/effect_damper.csv", &table(Shaker { damper: 1.3, ..NOMINAL }, None));
+    place.write("t/effect_mass.csv", &table(Shaker { mass: 1.03, ..NOMINAL }, None));
+    place.write("t/effect_delay.csv", &table(Shaker { delay_s: 2e-4, ..NOMINAL }, None));
+    let one = |name: &str, amount: f64, none: f64| {
+        format!("(name: \"{name}\", amount: {amount}, none: {none})")
+    };
+    let effects = [
+        one("spring", 1.03, 1.0),
+        one("damper", 1.3, 1.0),
+        one("mass", 1.03, 1.0),
+        one("delay", 2e-4, 0.0),
+    ];
+    place
+        .write("t/table.ron", &format!("(title: \"a shaker\", effects: [{}])", effects.join(", ")));
+    place
+}
+
+#[test]
+fn the_suspect_that_was_planted_is_named_with_its_amount() {
+    for (seed, name, truth, planted) in [
+        (1, "spring", Shaker { spring: 1.02, ..NOMINAL }, 1.02),
+        (2, "damper", Shaker { damper: 1.4, ..NOMINAL }, 1.4),
+        (3, "delay", Shaker { delay_s: 3e-4, ..NOMINAL }, 3e-4),
+    ] {
+        let place = folder(truth, seed);
+        let text = place.hhc(&["diagnose", "--table", "t", "-o", "out"]).done();
+        assert!(text.starts_with(&format!("Missing (confident): {name}.")), "{text}");
+        assert!(text.lines().count() <= 40, "{text}");
+        let found: serde_json::Value =
+            serde_json::from_str(&place.read("out/findings.json")).unwrap();
+        assert_eq!(
+            (&found["data_kind"], &found["verdict"]),
+            (&"EffectTable".into(), &"named".into())
+        );
+        let value = &found["parameters"][name]["amount"];
+        let [low, high] = [0, 1].map(|end| value["ci95"][end].as_f64().unwrap());
+        assert!((low..=high).contains(&planted), "{value}");
+        let gains = found["gain_by_channel"].as_array().unwrap();
+        assert_eq!((gains.len(), &gains[0]["unit"]), (4, &"um".into()));
+        let residuals = place.read("out/residuals.csv");
+        assert_eq!(residuals.lines().count(), 1 + 26 * 4);
+    }
+    let text = folder(NOMINAL, 7).hhc(&["diagnose", "--table", "t"]).done();
+    assert!(text.starts_with("Nothing is missing (confident)"), "{text}");
+    assert!(text.contains("Would have been seen"), "{text}");
+}
+
+#[test]
+fn without_deviations_nothing_is_sure_and_faults_name_their_file() {
+    let place = folder(Shaker { spring: 1.03, ..NOMINAL }, 4);
+    let bare: String = place
+        .read("t/measured.csv")
+        .lines()
+        .map(|line| line.split(',').take(5).collect::<Vec<_>>().join(",") + "\n")
+        .collect();
+    place.write("t/measured.csv", &bare);
+    let text = place.hhc(&["diagnose", "--table", "t"]).done();
+    assert!(!text.contains("(confident)"), "{text}");
+    let faulty = |name: &str, change: &dyn Fn(String) -> String, words: &[&str]| {
+        let place = folder(NOMINAL, 5);
+        place.write(name, &change(place.read(name)));
+        place.hhc(&["diagnose", "--table", "t"]).rejected(words);
+    };
+    let cut = |text: String| text.lines().take(20).collect::<Vec<_>>().join("\n") + "\n";
+    faulty("t/effect_mass.csv", &cut, &["effect_mass.csv", "has 19 rows, measured.csv has 26"]);
+    faulty(
+        "t/predicted.csv",
+        &|t| t.replace("x2_cos_um", "x3_cos_um"),
+        &["`x2_cos_um`", "conditions"],
+    );
+    faulty("t/measured.csv", &|t| t.replacen(",8,", ",0,", 1), &["measured.csv:2", "x1_cos_um_sd"]);
+    faulty(
+        "t/table.ron",
+        &|t| t.replace("amount: 1.3", "amount: 1.0"),
+        &["effects[1].amount", "no effect"],
+    );
+    faulty("t/table.ron", &|t| t.replace("none", "zero"), &["zero"]);
+    let missing = folder(NOMINAL, 6);
+    missing.write("t/table.ron", "(effects: [(name: \"joint\", amount: 2)])");
+    missing.hhc(&["diagnose", "--table", "t"]).rejected(&["effect_joint.csv"]);
+}
+
+const CASE: &str = "(title: \"small\", trim: WindTunnel(ct_sigma: 0.07, shaft_tilt_deg: 4), actuator: (model: Ideal),
+    structure: (elements: 5, modes: (flap: 2, lag: 1, torsion: 1)), response: (time_elements: 6),
+    uncertain: [(field: \"rotor.gj\", sd_percent: 2)])";
+
+/// Collective of a small rotor over the advance ratio, read half a degree too high: of pitch and hub thrust alone the
+/// pitch is off.
+#[test]
+fn a_sweep_of_a_rotor_is_imported_checked_and_diagnosed() {
+    let place = Place::new();
+    place.write("case.ron", CASE);
+    let mut text =
+        String::from("advance_ratio,theta0_deg,theta0_deg_sd,fz_n4_cos_N,fz_n4_cos_N_sd\n");
+    for (k, mu) in [0.15, 0.2, 0.25, 0.3].into_iter().enumerate() {
+        writeln!(text, "{mu},{},0.02,{},1e5", 10.0 + k as f64, k).unwrap();
+    }
+    place.write("sweep.csv", &text);
+    let told = place.hhc(&["import", "sweep.csv", "-o", "data"]).done();
+    assert!(told.contains("kind RotorSweep"), "{told}");
+    assert_eq!(place.hhc(&["check", "data", "--format", "json"]).json()["kind"], "rotor_sweep");
+    let told = place.hhc(&["diagnose", "case.ron", "--data", "data", "-o", "out"]).done();
+    assert!(told.lines().count() <= 40, "{told}");
+    let found: serde_json::Value = serde_json::from_str(&place.read("out/findings.json")).unwrap();
+    assert_eq!(found["data_kind"], "RotorSweep");
+    // eight values do not choose between thirty parameters
+    assert_eq!(found["causes"], serde_json::json!([]));
+    place.write("bad.csv", &text.replace("fz_n4_cos_N,", "fz_n4_cos_kN,"));
+    place.hhc(&["import", "bad.csv", "-o", "bad"]).done();
+    place.hhc(&["check", "bad"]).rejected(&["`fz_n4_cos_kN`", "expected one of"]);
+    place.write("case.ron", &CASE.replace("rotor.gj", "rotor.gk"));
+    place
+        .hhc(&["diagnose", "case.ron", "--data", "data", "-o", "out2"])
+        .rejected(&["case.ron:3", "`rotor.gk`"]);
+    place.hhc(&["identify", "data", "-o", "a.ron"]).rejected(&["identify no actuator"]);
+}
