@@ -185,8 +185,7 @@ impl Floor {
     }
 
     /// The measured points as traces of the engine; and how many columns their nuisance has. All of these count as
-    /// calibrations: a point held out is predicted by the simulation as it was given, or what the others ask of the nuisance
-    /// would pass for knowledge.
+    /// calibrations: where one of them must move far, nothing is denied with confidence.
     pub(super) fn traces(&self, tables: &Tables<'_>) -> (Vec<Trace>, usize) {
         let columns = self.nuisance(tables);
         let points = &tables.table.points;
