@@ -1,5 +1,8 @@
 //! What the columns of a sweep mean.
 
+use measured_data::PointData;
+use measured_data::problem::{Fault, Problems};
+
 /// A column of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Column {
@@ -182,6 +185,21 @@ impl Column {
         let station_r = station(parts.next()?).filter(|_| is_moment)?;
         reads(Load::Moment { axis, station_r })
     }
+}
+
+/// Checks the names of the columns of a table of points.
+///
+/// # Errors
+/// Every name that says nothing, at its place in the header.
+pub fn check_columns(data: &PointData) -> Result<(), Problems> {
+    let mut problems = Problems::default();
+    for own in &data.columns {
+        if let Err(reason) = Column::parse(&own.name) {
+            let message = format!("the column `{}` is not known: {reason}", own.name);
+            problems.push(data.table.column_place(&own.name), Fault::Refused { message });
+        }
+    }
+    problems.into_result(Some(()))
 }
 
 #[cfg(test)]

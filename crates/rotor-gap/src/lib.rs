@@ -21,7 +21,7 @@ mod spread;
 mod sweep;
 
 pub use causes::{LIBRARY, RotorCause, RotorParameter};
-pub use columns::{Column, Load, PartOf, Reading, Setting};
+pub use columns::{Column, Load, PartOf, Reading, Setting, check_columns};
 pub use diagnosis::{RotorDiagnosis, RotorQuestion, diagnose};
 pub use error::RotorGapError;
 pub use flight::predict;

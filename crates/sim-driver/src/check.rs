@@ -12,7 +12,7 @@ use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::stored_actuator::{GainRule, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
-use rotor_gap::Column;
+use rotor_gap::check_columns;
 use serde::Serialize;
 use std::path::Path;
 
@@ -152,15 +152,7 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
             (FileKind::ReversalCurves, summary)
         }
         DataSet::Sweep(data) => {
-            let mut problems = Problems::default();
-            for own in &data.points.columns {
-                if let Err(reason) = Column::parse(&own.name) {
-                    let message = format!("the column `{}` is not known: {reason}", own.name);
-                    let place = data.points.table.column_place(&own.name);
-                    problems.push(place, Fault::Refused { message });
-                }
-            }
-            problems.into_result(Some(()))?;
+            check_columns(&data.points)?;
             let (points, columns) = (data.points.ids.len(), data.points.columns.len());
             (FileKind::RotorSweep, format!("{}: {points} points, {columns} columns", data.title))
         }

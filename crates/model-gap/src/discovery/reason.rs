@@ -308,8 +308,8 @@ pub enum Reason {
     },
     /// A candidate hardly changes the error of the outputs.
     #[error(
-        "{cause} would lower the mean square of the outputs' error by {drop:.1e}: below {needed:.1e} that is the base \
-         model's own"
+        "{cause} hardly changes the outputs: it would take {drop:.1e} off the mean square of their error, and {needed:.1e} \
+         is the base model's own"
     )]
     Negligible {
         /// The candidate.

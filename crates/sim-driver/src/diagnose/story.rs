@@ -12,6 +12,8 @@ use serde::Serialize;
 const POOR_BASE: f64 = 0.1;
 /// Times that error from which on a simulation given lacks something of the reference runs already.
 const LACKS: f64 = 2.0;
+/// Percent of the output of the reference runs from which on it is said first.
+const FAR: f64 = 5.0;
 
 /// The story of a diagnosis, printable.
 #[derive(Clone, Serialize)]
@@ -134,12 +136,18 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
             "  The simulation given leaves {runs}{:.1} % of that of the measured runs (rms over spread).",
             own.measured_error_percent
         ));
-        if d.has_reference && own.error_percent > LACKS * 100.0 * d.floor {
+        if lacks(d).is_some() {
             sheet.line(format_args!(
                 "  What it lacks of the reference runs already: hhc diagnose ACTUATOR.ron --data FOLDER OF THE REFERENCE RUNS"
             ));
         }
     }
+}
+
+/// What the simulation given leaves of the reference runs, percent, if that is far more than the base model does.
+fn lacks(d: &Diagnosis) -> Option<f64> {
+    let left = d.given.filter(|_| d.has_reference)?.error_percent;
+    (left > LACKS * 100.0 * d.floor).then_some(left)
 }
 
 /// How well the channels are taken to keep their calibration.
@@ -205,13 +213,9 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
                 ));
             }
         }
-        sheet.line(format_args!(
-            "    lowers chi-square by {:.0}{}",
-            found.drop,
-            found
-                .held_out_drop
-                .map_or_else(String::new, |drop| format!(", by {drop:.0} on held-out runs")),
-        ));
+        let borne_out =
+            if found.held_out_drop.is_some() { ", and runs held out bear it out" } else { "" };
+        sheet.line(format_args!("    lowers chi-square by {:.0}{borne_out}", found.drop));
         if let Some(run) = found.only_run {
             sheet.line(format_args!("    run {} alone shows it", d.run_ids[run.experiment]));
         }
@@ -340,7 +344,13 @@ fn verdict_line(d: &Diagnosis, findings: &Findings) -> String {
     let sure = sure(findings.confidence);
     match findings.verdict {
         Verdict::NothingMissing => {
-            format!("Nothing is missing ({sure}): the misfit is at the floor of the base model.")
+            let floor = format!("({sure}): the misfit is at the floor of the base model.");
+            match lacks(d).filter(|left| *left > FAR) {
+                None => format!("Nothing is missing {floor}"),
+                Some(left) => format!(
+                    "Nothing has changed since the reference runs {floor} The simulation given is another matter: it leaves {left:.1} % of their output."
+                ),
+            }
         }
         Verdict::Named => missing(d, findings, &format!("({sure}): {names}")),
         Verdict::NamedStructureRemains => {
