@@ -15,7 +15,7 @@ use model_gap::points::{
 };
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
-use rotor_base::{Harmonic, HarmonicSeries, mean_square};
+use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_study::case::{Case, UncertainField};
 use std::sync::Arc;
 
@@ -28,8 +28,6 @@ const GOOD_PART: f64 = 0.15;
 const SURVIVORS: usize = 8;
 /// Parts of the difference between the actuators that the lag is listed at.
 const LAG_PARTS: usize = 9;
-/// Part of the prediction that a reading without any misfit is taken to scatter by, where nothing else is known.
-const LEAST_SCATTER: f64 = 1e-6;
 /// Calibration of an instrument from one session to the next, standard deviation of its gain.
 const GAIN: f64 = 0.005;
 
@@ -330,17 +328,11 @@ impl Round<'_> {
 
     /// Standard deviations of a channel at the points flown.
     fn deviations(&self, own: &SweepChannel, predicted: &Grid, channel: usize) -> Vec<f64> {
+        let values: Vec<Option<f64>> = self.points.iter().map(|&p| own.values[p]).collect();
+        let predicted: Vec<f64> = predicted.iter().map(|row| row[channel]).collect();
         match &own.scatter {
             Scatter::Stated(stated) => self.points.iter().map(|&p| stated[p]).collect(),
-            Scatter::Repeated(one) => vec![*one; self.points.len()],
-            Scatter::Unknown => {
-                let pairs = self.points.iter().zip(predicted);
-                let off: Vec<f64> =
-                    pairs.filter_map(|(&p, row)| Some(own.values[p]? - row[channel])).collect();
-                let size: Vec<f64> = predicted.iter().map(|row| row[channel]).collect();
-                let least = LEAST_SCATTER * mean_square(&size).sqrt().max(LEAST_SCATTER);
-                vec![mean_square(&off).sqrt().max(least); self.points.len()]
-            }
+            other => other.deviations(&values, &predicted),
         }
     }
 

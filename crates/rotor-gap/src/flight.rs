@@ -8,10 +8,9 @@ use model_gap::points::{Channel, Grid, channels_of};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
-use rotor_fem::Joint;
 use rotor_response::RotorSolution;
 use rotor_study::case::{Case, PitchHarmonic, TrimValues};
-use rotor_study::{FlapDrive, PlantError, StudyError, TrimmedRotor};
+use rotor_study::{FlapDrive, PlantError, StudyError, TrimmedRotor, scaled};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -73,18 +72,7 @@ impl Actuators {
             }
             _ => own,
         };
-        Ok(times(&mixed, drive.gain))
-    }
-}
-
-fn times(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
-    HarmonicSeries {
-        mean: factor * series.mean,
-        harmonics: series
-            .harmonics
-            .iter()
-            .map(|h| Harmonic { cosine: factor * h.cosine, sine: factor * h.sine })
-            .collect(),
+        Ok(scaled(&mixed, drive.gain))
     }
 }
 
@@ -114,13 +102,6 @@ fn density_of(case: &Case) -> f64 {
     r.lock_number * r.mass_kg_m / (3.0 * LIFT_SLOPE * r.chord_r * r.radius_m * r.radius_m)
 }
 
-fn scale_all(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
-    *uniform *= factor;
-    for own in table {
-        own.1 *= factor;
-    }
-}
-
 impl RotorModel {
     /// The case of a point: its condition with the true rotor speed and density.
     ///
@@ -131,19 +112,7 @@ impl RotorModel {
         let stated_rpm = point.omega_rpm.unwrap_or(case.rotor.omega_rpm);
         let slower = case.rotor.omega_rpm / (stated_rpm * self.speed);
         let r = &mut case.rotor;
-        for (uniform, table) in [
-            (&mut r.gj, &mut r.tables.gj),
-            (&mut r.ei_flap, &mut r.tables.ei_flap),
-            (&mut r.ei_lag, &mut r.tables.ei_lag),
-            (&mut r.ea, &mut r.tables.ea),
-        ] {
-            scale_all(uniform, table, slower * slower);
-        }
-        for joint in [&mut r.root.flap, &mut r.root.lag, &mut r.root.feather] {
-            if let Joint::Spring { stiffness } = joint {
-                *stiffness *= slower * slower;
-            }
-        }
+        r.stiffen(slower * slower);
         r.lag_damper *= slower;
         r.omega_rpm = stated_rpm * self.speed;
         let nominal = density_of(&self.case);
@@ -213,7 +182,7 @@ impl RotorModel {
             .map(|own| actuators.motion_deg(self, own).map_err(at_drive))
             .collect::<Result<_, _>>()?;
         let angles: Vec<HarmonicSeries> =
-            motions_deg.iter().map(|own| times(own, 1.0_f64.to_radians())).collect();
+            motions_deg.iter().map(|own| scaled(own, 1.0_f64.to_radians())).collect();
         let at_flaps = |source| StudyError::Response { field: "flaps".to_owned(), source };
         let response = if point.is_driven() {
             let start = near.map_or(&trimmed.trim().rotor, |near| &near.response);
@@ -231,7 +200,7 @@ impl RotorModel {
         let unit =
             |k: usize| if k < 3 { scales.force_newton() } else { scales.moment_newton_metre() };
         Ok(Flown {
-            hub: std::array::from_fn(|k| times(&loads.components[k], unit(k))),
+            hub: std::array::from_fn(|k| scaled(&loads.components[k], unit(k))),
             blades: case.rotor.blades,
             tip_mach: case.tip_mach(),
             trimmed,
@@ -289,14 +258,14 @@ impl Flown {
     fn series(&self, of: Load) -> Result<HarmonicSeries, StudyError> {
         let at_flaps = |source| StudyError::Response { field: "flaps".to_owned(), source };
         let angles =
-            || self.motions_deg.iter().map(|own| times(own, 1.0_f64.to_radians())).collect();
+            || self.motions_deg.iter().map(|own| scaled(own, 1.0_f64.to_radians())).collect();
         Ok(match of {
             Load::Hub(k) => self.hub[k].clone(),
             Load::FlapDeg(flap) => self.motions_deg[flap].clone(),
             Load::Moment { axis, station_r } => {
                 let found = self.trimmed.station_loads_with(angles(), &self.response, &[station_r]);
                 let found = found.map_err(at_flaps)?;
-                times(&found[0].moments.harmonics[axis], self.scales.moment_newton_metre())
+                scaled(&found[0].moments.harmonics[axis], self.scales.moment_newton_metre())
             }
             Load::Airload { is_moment, station_r } => {
                 let about = (angles(), &self.response);

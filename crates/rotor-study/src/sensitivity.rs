@@ -2,7 +2,7 @@
 
 use crate::case::{
     AttachedFlowModel, Case, ControllerChoice, EffortChoice, FreeWakeValues, InflowChoice,
-    LoadScaleChoice, NearWakeMotion, RolledUpChoice, RotorValues, TrimValues,
+    LoadScaleChoice, NearWakeMotion, RolledUpChoice, RotorValues, TrimValues, times,
 };
 use crate::control::{Drives, ideal_control};
 use crate::error::StudyError;
@@ -131,14 +131,6 @@ fn assume(id: &'static str, text: &'static str, change: fn(&mut Case)) -> Assump
 fn twist(rotor: &mut RotorValues, deg: f64) {
     rotor.twist_deg = deg;
     rotor.tables.twist_deg.clear();
-}
-
-/// A property times a factor, given uniform or as a table.
-fn times(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
-    *uniform *= factor;
-    for (_, value) in table {
-        *value *= factor;
-    }
 }
 
 fn shift_flaps(case: &mut Case, by_r: f64) {

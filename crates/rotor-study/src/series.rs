@@ -8,7 +8,7 @@ pub(crate) fn times(harmonic: Harmonic, factor: f64) -> Harmonic {
 }
 
 /// A series times a factor.
-pub(crate) fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+pub fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
     let harmonics = series.harmonics.iter().map(|h| times(*h, factor)).collect();
     HarmonicSeries { mean: factor * series.mean, harmonics }
 }

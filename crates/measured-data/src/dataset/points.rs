@@ -3,6 +3,7 @@
 use crate::files::Source;
 use crate::problem::{Fault, Problems};
 use crate::tables::PointCsv;
+use rotor_base::mean_square;
 use std::collections::BTreeMap;
 
 /// Column of names of the points.
@@ -13,7 +14,8 @@ const GROUP: &str = "group";
 const REPEAT: &str = "repeat";
 /// Ending of the column of standard deviations of another.
 const DEVIATION: &str = "_sd";
-/// Part of the rms of a column that repeats which agree to the last digit are taken to scatter by.
+/// Part of the rms of a column, or of its prediction, that is the least scatter: repeats or a prediction may agree to the last
+/// digit.
 const LEAST_SCATTER: f64 = 1e-6;
 
 /// Readings at points of test.
@@ -49,6 +51,23 @@ pub enum Scatter {
     Repeated(f64),
     /// Nothing says.
     Unknown,
+}
+
+impl Scatter {
+    /// Standard deviations of readings, row by row. Where nothing says, the misfit to what is predicted is taken for it.
+    pub fn deviations(&self, values: &[Option<f64>], predicted: &[f64]) -> Vec<f64> {
+        let one = match self {
+            Self::Stated(stated) => return stated.clone(),
+            Self::Repeated(one) => *one,
+            Self::Unknown => {
+                let off =
+                    values.iter().zip(predicted).filter_map(|(read, own)| Some((*read)? - own));
+                let least = LEAST_SCATTER * mean_square(predicted).sqrt().max(LEAST_SCATTER);
+                mean_square(&off.collect::<Vec<_>>()).sqrt().max(least)
+            }
+        };
+        vec![one; values.len()]
+    }
 }
 
 impl PointData {
@@ -157,7 +176,7 @@ fn pooled(values: &[Option<f64>], repeats: &[usize]) -> Option<f64> {
         degrees += own.len() as f64 - 1.0;
     }
     let read: Vec<f64> = values.iter().flatten().copied().collect();
-    let least = LEAST_SCATTER * rotor_base::mean_square(&read).sqrt();
+    let least = LEAST_SCATTER * mean_square(&read).sqrt();
     (degrees > 0.0).then(|| (square / degrees).sqrt().max(least)).filter(|own| *own > 0.0)
 }
 

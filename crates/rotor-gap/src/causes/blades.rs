@@ -4,45 +4,44 @@ use super::{Occasion, RotorCause, RotorParameter};
 use crate::model::RotorModel;
 use model_gap::points::Shown;
 use rotor_fem::Joint;
-use rotor_study::case::{CouplingsChoice, DissimilarBlade};
+use rotor_study::case::{CouplingsChoice, DissimilarBlade, RotorValues, times};
 
 const STIFF: (f64, f64) = (0.4, 2.0);
 /// A mode near a harmonic answers far from straight: several amounts on both sides.
 const STEPS: [f64; 5] = [1.05, 0.95, 0.85, 1.2, 0.7];
 const SWEEP_OF_SPEED: &[&str] = &["points at other rotor speeds", "blade frequencies at rest"];
 
-fn scale(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
-    *uniform *= factor;
-    for own in table {
-        own.1 *= factor;
-    }
+/// A property of the blade, uniform and as a table.
+type Property<'a> = (&'a mut f64, &'a mut Vec<(f64, f64)>);
+
+/// A stiffness times a ratio; `of` gives it, uniform and as a table.
+fn stiffness(
+    id: &'static str,
+    physics: &'static str,
+    of: fn(&mut RotorValues) -> Property<'_>,
+) -> RotorCause {
+    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
+    RotorCause::new(id, physics, parameters, move |m, v| {
+        let (uniform, table) = of(&mut m.case.rotor);
+        times(uniform, table, v[0]);
+    })
 }
 
 pub(super) fn stiffness_flap() -> RotorCause {
     let physics = "the blade bends more or less easily out of the plane: EI_flap times a ratio";
-    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
-    RotorCause::new("stiffness-flap", physics, parameters, |m, v| {
-        scale(&mut m.case.rotor.ei_flap, &mut m.case.rotor.tables.ei_flap, v[0]);
-    })
-    .beside(&["mass"], SWEEP_OF_SPEED)
+    stiffness("stiffness-flap", physics, |r| (&mut r.ei_flap, &mut r.tables.ei_flap))
+        .beside(&["mass"], SWEEP_OF_SPEED)
 }
 
 pub(super) fn stiffness_lag() -> RotorCause {
     let physics = "the blade bends more or less easily in the plane: EI_lag times a ratio";
-    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
-    RotorCause::new("stiffness-lag", physics, parameters, |m, v| {
-        scale(&mut m.case.rotor.ei_lag, &mut m.case.rotor.tables.ei_lag, v[0]);
-    })
-    .beside(&["mass"], SWEEP_OF_SPEED)
+    stiffness("stiffness-lag", physics, |r| (&mut r.ei_lag, &mut r.tables.ei_lag))
+        .beside(&["mass"], SWEEP_OF_SPEED)
 }
 
 pub(super) fn stiffness_torsion() -> RotorCause {
     let physics = "the blade twists more or less easily: GJ times a ratio";
-    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
-    RotorCause::new("stiffness-torsion", physics, parameters, |m, v| {
-        scale(&mut m.case.rotor.gj, &mut m.case.rotor.tables.gj, v[0]);
-    })
-    .beside(
+    stiffness("stiffness-torsion", physics, |r| (&mut r.gj, &mut r.tables.gj)).beside(
         &["pitch-link", "aerodynamic-centre"],
         &["a static load at the pitch horn", "twist along the span"],
     )
@@ -87,19 +86,7 @@ pub(super) fn mass() -> RotorCause {
     RotorCause::new("mass", physics, parameters, |m, v| {
         let r = &mut m.case.rotor;
         let lighter = 1.0 / v[0];
-        for (uniform, table) in [
-            (&mut r.ei_flap, &mut r.tables.ei_flap),
-            (&mut r.ei_lag, &mut r.tables.ei_lag),
-            (&mut r.gj, &mut r.tables.gj),
-            (&mut r.ea, &mut r.tables.ea),
-        ] {
-            scale(uniform, table, lighter);
-        }
-        for joint in [&mut r.root.flap, &mut r.root.lag, &mut r.root.feather] {
-            if let Joint::Spring { stiffness } = joint {
-                *stiffness *= lighter;
-            }
-        }
+        r.stiffen(lighter);
         r.lag_damper *= lighter;
         r.lock_number *= lighter;
         r.mass_kg_m *= v[0];

@@ -1,7 +1,7 @@
 //! The sections of a case: the rotor, its blades and their flaps.
 
 use super::field::{is_default, section, values};
-use rotor_fem::RootSupport;
+use rotor_fem::{Joint, RootSupport};
 use rotor_response::FlapMass;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -107,6 +107,31 @@ section! {
         /// controls, attitude and inflow of the rotor with all blades alike.
         #[serde(skip_serializing_if = "Vec::is_empty", alias = "unlike_blades")]
         pub dissimilar_blades: Vec<DissimilarBlade> = vec![], Any, "", "";
+    }
+}
+
+/// A property of the blade times a factor, given uniform or as a table.
+pub fn times(uniform: &mut f64, table: &mut [(f64, f64)], factor: f64) {
+    *uniform *= factor;
+    for (_, value) in table {
+        *value *= factor;
+    }
+}
+
+impl RotorValues {
+    /// Multiplies every stiffness, those of joints included: what another rotor speed or mass does to values that are over
+    /// both.
+    pub fn stiffen(&mut self, factor: f64) {
+        let t = &mut self.tables;
+        times(&mut self.gj, &mut t.gj, factor);
+        times(&mut self.ei_flap, &mut t.ei_flap, factor);
+        times(&mut self.ei_lag, &mut t.ei_lag, factor);
+        times(&mut self.ea, &mut t.ea, factor);
+        for joint in [&mut self.root.flap, &mut self.root.lag, &mut self.root.feather] {
+            if let Joint::Spring { stiffness } = joint {
+                *stiffness *= factor;
+            }
+        }
     }
 }
 

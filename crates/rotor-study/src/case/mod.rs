@@ -29,7 +29,7 @@ mod wake;
 
 pub use blade::{
     BladeTables, DissimilarBlade, EffectivenessValues, FlapValues, GravityChoice, PitchHarmonic,
-    RootPitchBy, RotorValues,
+    RootPitchBy, RotorValues, times,
 };
 pub use control::{
     ActuatorChoice, ActuatorPath, ActuatorValues, BenchFolder, ControlActuator, ControlValues,

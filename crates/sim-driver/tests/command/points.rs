@@ -172,8 +172,7 @@ const CASE: &str = "(title: \"small\", trim: WindTunnel(ct_sigma: 0.07, shaft_ti
     structure: (elements: 5, modes: (flap: 2, lag: 1, torsion: 1)), response: (time_elements: 6),
     uncertain: [(field: \"rotor.gj\", sd_percent: 2)])";
 
-/// Collective of a small rotor over the advance ratio, read half a degree too high: of pitch and hub thrust alone the
-/// pitch is off.
+/// Four points of a small rotor: too few for a name, enough for every file on the way.
 #[test]
 fn a_sweep_of_a_rotor_is_imported_checked_and_diagnosed() {
     let place = Place::new();

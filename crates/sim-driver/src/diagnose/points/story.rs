@@ -170,7 +170,12 @@ impl PointDiagnosis {
                 100.0 * next.least_distance.min(1.0)
             )
         };
-        sheet.line(format_args!("  open: {}; {told}", open.join(", ")));
+        sheet.line(format_args!("  open: {}; {told}", unique(open).join(", ")));
+        let all = next.open.iter().flat_map(|&c| self.found.candidates[c].separating);
+        let besides = unique(all.copied()).join("; ");
+        if !besides.is_empty() {
+            sheet.line(format_args!("  what tells them apart besides: {besides}"));
+        }
     }
 
     /// What it rests on.

@@ -2,16 +2,13 @@
 
 use crate::files::Folder;
 use crate::problem::{Fault, Problem, Problems};
-use measured_data::{EffectTables, PointColumn, Scatter, read_effect_tables};
+use measured_data::{EffectTables, Scatter, read_effect_tables};
 use model_gap::points::{
-    Grid, Instrument, Point, PointTable, Shown, Suspect, SuspectParameter, channels_of, lasting,
+    Instrument, Point, PointTable, Shown, Suspect, SuspectParameter, channels_of, lasting,
 };
-use rotor_base::mean_square;
 
 /// Amounts that a range reaches to where none is stated.
 const USUAL_RANGE: f64 = 20.0;
-/// Part of the prediction that a reading without any misfit is taken to scatter by, where nothing else is known.
-const LEAST_SCATTER: f64 = 1e-6;
 
 /// A folder of tables as read.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +38,10 @@ pub fn read_table(folder: &Folder) -> Result<TableData, Problems> {
         .readings
         .iter()
         .enumerate()
-        .map(|(c, own)| deviations(own, &read.predicted, c))
+        .map(|(c, own)| {
+            let predicted: Vec<f64> = read.predicted.iter().map(|row| row[c]).collect();
+            own.scatter.deviations(&own.values, &predicted)
+        })
         .collect();
     let point = |p: usize| Point {
         id: read.points.ids[p].clone(),
@@ -136,20 +136,4 @@ fn suspects_of(read: &EffectTables, problems: &mut Problems) -> Vec<Suspect> {
         }
     }
     suspects
-}
-
-/// Standard deviations of a column, by point.
-fn deviations(own: &PointColumn, predicted: &Grid, channel: usize) -> Vec<f64> {
-    match &own.scatter {
-        Scatter::Stated(stated) => stated.clone(),
-        Scatter::Repeated(one) => vec![*one; own.values.len()],
-        Scatter::Unknown => {
-            let pairs = own.values.iter().zip(predicted);
-            let off: Vec<f64> =
-                pairs.filter_map(|(read, row)| read.map(|read| read - row[channel])).collect();
-            let size: Vec<f64> = predicted.iter().map(|row| row[channel]).collect();
-            let least = LEAST_SCATTER * mean_square(&size).sqrt().max(LEAST_SCATTER);
-            vec![mean_square(&off).sqrt().max(least); own.values.len()]
-        }
-    }
 }
