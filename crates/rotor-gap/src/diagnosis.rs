@@ -2,7 +2,7 @@
 
 use crate::causes::{Occasion, RotorCause, library};
 use crate::error::RotorGapError;
-use crate::flight::{Actuators, Flown, grid_of};
+use crate::flight::{Actuators, Flown, amplitude, grid_of};
 use crate::model::RotorModel;
 use crate::spread::{alternatives, moved};
 use crate::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
@@ -17,6 +17,7 @@ use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_study::case::{Case, UncertainField};
+use rotor_study::{FlapDrive, StudyError};
 use std::sync::Arc;
 
 /// Rounds in which the effects of what is left are computed anew where they were found.
@@ -111,8 +112,8 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         source: Box::new(source),
     })?;
     begun(0, "the simulation at every point");
-    let tried: Vec<_> =
-        sweep.points.par_iter().map(|point| model.fly(point, &actuators, None)).collect();
+    let every: Vec<&SweepPoint> = sweep.points.iter().collect();
+    let tried = model.fly(&every, &actuators, None);
     let (mut points, mut flown, mut aside) = (Vec::new(), Vec::new(), Vec::new());
     for (p, result) in tried.into_iter().enumerate() {
         match result {
@@ -132,12 +133,15 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
     let names: Vec<&str> = sweep.channels.iter().map(|own| own.name.as_str()).collect();
     let (named, instruments) = channels_of(&names);
     let round = Round { question, model, actuators, points, flown, named, instruments };
-    let lag_deg = round.lags_deg();
+    let middle = round.middle_drive();
+    let lag_deg = middle.map_or_else(Vec::new, |own| round.lags_deg(own));
     let causes = library(&Occasion {
         model: &round.model,
         instruments: &round.instruments,
         has_hysteretic: round.actuators.hysteretic.is_some(),
+        is_ideal: matches!(round.actuators.own, FlapDrive::Ideal { .. }),
         is_driven: sweep.points.iter().any(SweepPoint::is_driven),
+        middle_volt: middle.map_or(1.0, |own| amplitude(own.1)),
         lag_deg: &lag_deg,
     });
     let (mut table, alternatives) = round.table(&causes)?;
@@ -172,7 +176,7 @@ fn extended(model: &RotorModel, causes: &[RotorCause], found: &PointFinding) -> 
 }
 
 impl Round<'_> {
-    fn study_error(&self, place: usize, source: rotor_study::StudyError) -> RotorGapError {
+    fn study_error(&self, place: usize, source: StudyError) -> RotorGapError {
         let point = self.question.sweep.points[self.points[place]].id.clone();
         RotorGapError::Study { point, source: Box::new(source) }
     }
@@ -181,14 +185,17 @@ impl Round<'_> {
         &self.question.sweep.channels
     }
 
-    /// Lag of an actuator with a part of the hysteresis, at the middle amplitude of the driven points.
-    fn lags_deg(&self) -> Vec<(f64, f64)> {
+    /// The drive of middle amplitude: harmonic and voltage; none where no flap is driven.
+    fn middle_drive(&self) -> Option<(usize, Harmonic)> {
         let driven = self.question.sweep.points.iter().flat_map(|point| &point.flaps_volt);
         let mut all: Vec<(usize, Harmonic)> = driven.flatten().copied().collect();
-        let size = |own: &(usize, Harmonic)| own.1.cosine.hypot(own.1.sine);
-        all.retain(|own| size(own) > 0.0);
-        all.sort_by(|a, b| size(a).total_cmp(&size(b)));
-        let Some(&(harmonic, own)) = all.get(all.len() / 2) else { return Vec::new() };
+        all.retain(|own| amplitude(own.1) > 0.0);
+        all.sort_by(|a, b| amplitude(a.1).total_cmp(&amplitude(b.1)));
+        all.get(all.len() / 2).copied()
+    }
+
+    /// Lag of an actuator with a part of the hysteresis, at a drive.
+    fn lags_deg(&self, (harmonic, own): (usize, Harmonic)) -> Vec<(f64, f64)> {
         let lag = |part: f64| {
             let mut model = self.model.clone();
             let still = self.actuators.motion_deg(&model, &[(harmonic, own)]).ok()?;
@@ -206,23 +213,24 @@ impl Round<'_> {
 
     /// What a model reads at every point; one that differs in its readings alone is not flown again.
     fn grid(&self, model: &RotorModel) -> Result<Grid, RotorGapError> {
-        let read =
-            |flown: &Flown| flown.read(model, self.channels(), &self.named, &self.instruments);
-        let is_alike = model.flies_as(&self.model);
+        let read = |(place, flown): (usize, &Flown)| {
+            let read = flown.read(model, self.channels(), &self.named, &self.instruments);
+            read.map_err(|source| self.study_error(place, source))
+        };
+        if model.flies_as(&self.model) {
+            return self.flown.par_iter().enumerate().map(read).collect();
+        }
+        let points: Vec<&SweepPoint> =
+            self.points.iter().map(|&p| &self.question.sweep.points[p]).collect();
         // an orbit of as many modes leads to another
         let has_modes = model.case.structure.modes == self.model.case.structure.modes;
-        let one = |(place, near): (usize, &Flown)| {
-            let point = &self.question.sweep.points[self.points[place]];
-            let row = if is_alike {
-                read(near)
-            } else {
-                model
-                    .fly(point, &self.actuators, has_modes.then_some(near))
-                    .and_then(|own| read(&own))
-            };
-            row.map_err(|source| self.study_error(place, source))
+        let near: Vec<&Flown> = self.flown.iter().collect();
+        let flown = model.fly(&points, &self.actuators, has_modes.then_some(&near[..]));
+        let of_point = |(place, own): (usize, Result<Flown, StudyError>)| {
+            own.map_err(|source| self.study_error(place, source))
+                .and_then(|own| read((place, &own)))
         };
-        self.flown.par_iter().enumerate().map(one).collect()
+        flown.into_par_iter().enumerate().map(of_point).collect()
     }
 
     /// The points with what the simulation says of them, with some of each cause, and with what it is not sure of.

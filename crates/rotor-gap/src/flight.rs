@@ -2,7 +2,7 @@
 
 use crate::columns::{Load, PartOf, Reading};
 use crate::error::RotorGapError;
-use crate::model::RotorModel;
+use crate::model::{RotorModel, later};
 use crate::sweep::{Sweep, SweepChannel, SweepPoint};
 use model_gap::points::{Channel, Grid, channels_of};
 use preisach_dyn::{ActuatorModel, VoltageRange};
@@ -72,8 +72,16 @@ impl Actuators {
             }
             _ => own,
         };
-        Ok(scaled(&mixed, drive.gain))
+        let volt = voltages.iter().map(|(_, own)| amplitude(*own).powi(2)).sum::<f64>().sqrt();
+        let lag_rad = (drive.lag_deg_per_root_volt * volt.sqrt()).to_radians();
+        let harmonics = mixed.harmonics.iter().map(|own| later(*own, lag_rad)).collect();
+        Ok(scaled(&HarmonicSeries { mean: mixed.mean, harmonics }, drive.gain))
     }
+}
+
+/// Amplitude of a harmonic.
+pub(crate) fn amplitude(own: Harmonic) -> f64 {
+    own.cosine.hypot(own.sine)
 }
 
 /// The series of equal samples over the revolution.
@@ -81,10 +89,17 @@ fn resolved(values: &[f64]) -> HarmonicSeries {
     HarmonicSeries::from_uniform_samples(values, AZIMUTHS / 2 - 1).unwrap_or_default()
 }
 
+/// A rotor trimmed at a point, with its case there.
+#[derive(Debug)]
+struct Trimmed {
+    case: Case,
+    rotor: TrimmedRotor,
+}
+
 /// A rotor as flown at a point.
 #[derive(Debug, Clone)]
 pub(crate) struct Flown {
-    pub(crate) trimmed: TrimmedRotor,
+    trimmed: Arc<Trimmed>,
     /// The response with the flaps driven.
     response: RotorSolution,
     /// Motion of the flaps, deg.
@@ -92,8 +107,6 @@ pub(crate) struct Flown {
     /// Hub loads, N and N m.
     hub: [HarmonicSeries; 6],
     scales: RotorScales,
-    blades: usize,
-    tip_mach: f64,
 }
 
 /// The density that the Lock number of a case stands for, kg/m^3.
@@ -160,18 +173,24 @@ impl RotorModel {
         case
     }
 
-    /// Flies a point; `near` is another rotor nearly like it there.
-    pub(crate) fn fly(
+    /// Trims a point without its drives; `near` is another rotor nearly like it there.
+    fn trim(&self, point: &SweepPoint, near: Option<&Trimmed>) -> Result<Trimmed, StudyError> {
+        let case = self.case_at(point);
+        let rotor = match near {
+            Some(near) => TrimmedRotor::near(&case, &near.rotor)?,
+            None => TrimmedRotor::new(&case, None)?,
+        };
+        Ok(Trimmed { case, rotor })
+    }
+
+    /// Drives the flaps of a trimmed point; `near` is another rotor nearly like it there.
+    fn drive(
         &self,
         point: &SweepPoint,
         actuators: &Actuators,
+        trimmed: &Arc<Trimmed>,
         near: Option<&Flown>,
     ) -> Result<Flown, StudyError> {
-        let case = self.case_at(point);
-        let trimmed = match near {
-            Some(near) => TrimmedRotor::near(&case, &near.trimmed)?,
-            None => TrimmedRotor::new(&case, None)?,
-        };
         let at_drive = |source: PlantError| StudyError::Refused {
             field: "actuator".to_owned(),
             message: source.to_string(),
@@ -184,30 +203,52 @@ impl RotorModel {
         let angles: Vec<HarmonicSeries> =
             motions_deg.iter().map(|own| scaled(own, 1.0_f64.to_radians())).collect();
         let at_flaps = |source| StudyError::Response { field: "flaps".to_owned(), source };
+        let Trimmed { case, rotor } = &**trimmed;
         let response = if point.is_driven() {
-            let start = near.map_or(&trimmed.trim().rotor, |near| &near.response);
-            trimmed.with_flaps_from(angles.clone(), start).map_err(at_flaps)?
+            let start = near.map_or(&rotor.trim().rotor, |near| &near.response);
+            rotor.with_flaps_from(angles.clone(), start).map_err(at_flaps)?
         } else {
-            trimmed.trim().rotor.clone()
+            rotor.trim().rotor.clone()
         };
         let loads = if case.rotor.dissimilar_blades.is_empty() {
             response.hub.clone()
         } else {
-            let mut solvers = trimmed.unlike_solvers(&case)?;
-            trimmed.unlike_hub_loads(&mut solvers, &angles, &response).map_err(at_flaps)?
+            let mut solvers = rotor.unlike_solvers(case)?;
+            rotor.unlike_hub_loads(&mut solvers, &angles, &response).map_err(at_flaps)?
         };
         let scales = case.scales();
         let unit =
             |k: usize| if k < 3 { scales.force_newton() } else { scales.moment_newton_metre() };
-        Ok(Flown {
-            hub: std::array::from_fn(|k| scaled(&loads.components[k], unit(k))),
-            blades: case.rotor.blades,
-            tip_mach: case.tip_mach(),
-            trimmed,
-            response,
-            motions_deg,
-            scales,
-        })
+        let hub = std::array::from_fn(|k| scaled(&loads.components[k], unit(k)));
+        Ok(Flown { trimmed: Arc::clone(trimmed), response, motions_deg, hub, scales })
+    }
+
+    /// Flies points, `near` a rotor nearly like this one at each of them. Points that differ in their drives alone share
+    /// their trim.
+    pub(crate) fn fly(
+        &self,
+        points: &[&SweepPoint],
+        actuators: &Actuators,
+        near: Option<&[&Flown]>,
+    ) -> Vec<Result<Flown, StudyError>> {
+        let mut first: Vec<usize> = Vec::new();
+        let mut of_point = Vec::with_capacity(points.len());
+        for (p, point) in points.iter().enumerate() {
+            let place = first.iter().position(|&other| points[other].is_trimmed_as(point));
+            of_point.push(place.unwrap_or_else(|| {
+                first.push(p);
+                first.len() - 1
+            }));
+        }
+        let trim =
+            |p: usize| self.trim(points[p], near.map(|near| &*near[p].trimmed)).map(Arc::new);
+        let trims: Vec<Option<Arc<Trimmed>>> = first.par_iter().map(|&p| trim(p).ok()).collect();
+        let one = |(p, &point): (usize, &&SweepPoint)| {
+            // one that failed fails again, and says why
+            let trimmed = trims[of_point[p]].clone().map_or_else(|| trim(p), Ok)?;
+            self.drive(point, actuators, &trimmed, near.map(|near| near[p]))
+        };
+        points.par_iter().enumerate().map(one).collect()
     }
 }
 
@@ -221,19 +262,20 @@ impl Flown {
         instruments: &[String],
     ) -> Result<Vec<f64>, StudyError> {
         let path = &model.path;
+        let Trimmed { case, rotor } = &*self.trimmed;
         channels
             .iter()
             .zip(named)
             .map(|(channel, named)| {
                 let value = match channel.reading {
                     Reading::ControlDeg(k) => {
-                        let c = &self.trimmed.trim().controls;
+                        let c = &rotor.trim().controls;
                         let own = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad][k].to_degrees();
                         own + if k == 0 { path.collective_deg } else { 0.0 }
                     }
                     Reading::PowerWatt => {
                         let unit = self.scales.moment_newton_metre() * self.scales.omega_rad_s();
-                        self.response.power.shaft * self.blades as f64 * unit
+                        self.response.power.shaft * case.rotor.blades as f64 * unit
                     }
                     Reading::Harmonic { of, harmonic, part } => {
                         let series = self.series(of)?;
@@ -259,18 +301,18 @@ impl Flown {
         let at_flaps = |source| StudyError::Response { field: "flaps".to_owned(), source };
         let angles =
             || self.motions_deg.iter().map(|own| scaled(own, 1.0_f64.to_radians())).collect();
+        let Trimmed { case, rotor } = &*self.trimmed;
         Ok(match of {
             Load::Hub(k) => self.hub[k].clone(),
             Load::FlapDeg(flap) => self.motions_deg[flap].clone(),
             Load::Moment { axis, station_r } => {
-                let found = self.trimmed.station_loads_with(angles(), &self.response, &[station_r]);
+                let found = rotor.station_loads_with(angles(), &self.response, &[station_r]);
                 let found = found.map_err(at_flaps)?;
                 scaled(&found[0].moments.harmonics[axis], self.scales.moment_newton_metre())
             }
             Load::Airload { is_moment, station_r } => {
                 let about = (angles(), &self.response);
-                let found =
-                    self.trimmed.airloads_with(about, &[station_r], self.tip_mach, AZIMUTHS);
+                let found = rotor.airloads_with(about, &[station_r], case.tip_mach(), AZIMUTHS);
                 let (loads, _) = found.map_err(at_flaps)?;
                 let value = loads[0].loads.iter();
                 let values: Vec<f64> =
@@ -278,7 +320,7 @@ impl Flown {
                 resolved(&values)
             }
             Load::TipTwistDeg | Load::TipFlap => {
-                let tip = self.trimmed.tip_motion(&self.response, AZIMUTHS);
+                let tip = rotor.tip_motion(&self.response, AZIMUTHS);
                 let is_twist = matches!(of, Load::TipTwistDeg);
                 let value = |at: &rotor_response::TipMotion| {
                     if is_twist { at.twist_rad.to_degrees() } else { at.flap }
@@ -307,12 +349,13 @@ pub fn predict(
     let actuators = Actuators::of(&model.case, actuator, hysteretic).map_err(at("-"))?;
     let names: Vec<&str> = sweep.channels.iter().map(|own| own.name.as_str()).collect();
     let (named, instruments) = channels_of(&names);
-    let one = |point: &SweepPoint| {
-        let flown = model.fly(point, &actuators, None);
-        let read = flown.and_then(|own| own.read(model, &sweep.channels, &named, &instruments));
-        read.map_err(at(&point.id))
+    let points: Vec<&SweepPoint> = sweep.points.iter().collect();
+    let flown = model.fly(&points, &actuators, None);
+    let read = |(point, own): (&SweepPoint, Result<Flown, StudyError>)| {
+        let own = own.map_err(at(&point.id))?;
+        own.read(model, &sweep.channels, &named, &instruments).map_err(at(&point.id))
     };
-    sweep.points.par_iter().map(one).collect()
+    sweep.points.iter().zip(flown).map(read).collect()
 }
 
 /// The readings of a model at every point, from what was flown.

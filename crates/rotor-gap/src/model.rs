@@ -29,6 +29,8 @@ pub struct FlapDriveModel {
     pub gain: f64,
     /// Part of the difference between an actuator with hysteresis and an ideal one that the motion has.
     pub hysteresis: f64,
+    /// Lag of every harmonic, deg, over the root of the amplitude of the voltage, V: hysteresis that keeps the stroke.
+    pub lag_deg_per_root_volt: f64,
 }
 
 /// From loads to readings.
@@ -56,7 +58,7 @@ impl RotorModel {
             speed: 1.0,
             density: 1.0,
             lift_slope: 1.0,
-            drive: FlapDriveModel { gain: 1.0, hysteresis: 0.0 },
+            drive: FlapDriveModel { gain: 1.0, hysteresis: 0.0, lag_deg_per_root_volt: 0.0 },
             path: LoadPath::default(),
         }
     }
@@ -94,18 +96,20 @@ impl LoadPath {
         let ratio = n * rev_hz * self.compliance_s2.max(0.0).sqrt();
         let (real, imaginary) = (1.0 - ratio * ratio, 2.0 * self.damping * ratio);
         let size = real.hypot(imaginary);
-        let angle = late + imaginary.atan2(real);
-        let (sin, cos) = angle.sin_cos();
-        Harmonic {
-            cosine: (load.cosine * cos - load.sine * sin) / size,
-            sine: (load.sine * cos + load.cosine * sin) / size,
-        }
+        let read = later(load, late + imaginary.atan2(real));
+        Harmonic { cosine: read.cosine / size, sine: read.sine / size }
     }
 
     /// The gain of an instrument.
     pub fn gain(&self, instrument: &str) -> f64 {
         self.gains.get(instrument).copied().unwrap_or(1.0)
     }
+}
+
+/// A harmonic that comes later by an angle of its own.
+pub(crate) fn later(own: Harmonic, angle_rad: f64) -> Harmonic {
+    let (sin, cos) = angle_rad.sin_cos();
+    Harmonic { cosine: own.cosine * cos - own.sine * sin, sine: own.sine * cos + own.cosine * sin }
 }
 
 #[cfg(test)]

@@ -74,6 +74,17 @@ impl SweepPoint {
     pub fn is_driven(&self) -> bool {
         self.flaps_volt.iter().flatten().any(|(_, own)| own.cosine != 0.0 || own.sine != 0.0)
     }
+
+    /// Whether another point has the same condition, its drives aside.
+    pub(crate) fn is_trimmed_as(&self, other: &Self) -> bool {
+        let condition = |own: &Self| Self {
+            id: String::new(),
+            group: 0,
+            flaps_volt: Vec::new(),
+            ..own.clone()
+        };
+        condition(self) == condition(other)
+    }
 }
 
 impl Sweep {

@@ -19,8 +19,6 @@ pub struct PointFinding {
     pub measured: Vec<usize>,
     /// The error of every channel before and after, on points that the fits have not seen; empty without a gain.
     pub gains: Vec<ChannelGain>,
-    /// Error of the simulation that no alternative holds, by channel and in its unit.
-    pub model_error: Vec<f64>,
     /// What to measure next; none where nothing is open or no point tells it apart.
     pub next: Option<NextPoints>,
 }
@@ -102,8 +100,7 @@ impl PointTable {
                 self.show(other.candidate, &mut other.parameters);
             }
         }
-        let model_error = floor.model_error;
-        Ok(PointFinding { finding, candidates, measured, gains, model_error, next })
+        Ok(PointFinding { finding, candidates, measured, gains, next })
     }
 
     /// Lets what only says which suspect it is span those of the same name that do about as well.

@@ -13,43 +13,152 @@ const SMOOTH: f64 = 1.0;
 /// beside all of them.
 const LEFT_OUT: f64 = 0.4;
 
+/// Two values of a condition that are taken for one, over the range of the table and over themselves.
+const SAME_OF_RANGE: f64 = 0.01;
+const SAME_OF_VALUE: f64 = 0.002;
+
 /// The error of the simulation that no alternative holds, by channel and in its unit.
-///
-/// Each alternative is left out in turn. What the others, the uncertain inputs and the calibrations do not explain of it is
-/// what two models differ by that are thought equally good; the truth, one more of them, is near these. The channels of one harmonic share it, so that the reference
-/// of azimuth does not matter.
-pub(super) fn model_error(table: &PointTable) -> Result<Vec<f64>, GapError> {
-    let width = table.channels.len();
-    let deviations: Grid = table.points.iter().map(|point| point.deviation.clone()).collect();
-    let tables = Tables::of_measured(table, deviations);
-    let away = |grid: &Grid| tables.signal(|p, c| grid[p][c] - table.predicted[p][c]).concat();
-    let alternatives: Vec<Vec<f64>> = table.alternatives.iter().map(away).collect();
-    let known: Vec<Vec<f64>> = table.uncertain.iter().map(away).collect();
-    let (mut squares, mut counts) = (vec![0.0; width], vec![0.0; width]);
-    for (out, left_out) in alternatives.iter().enumerate() {
-        let others = alternatives.iter().enumerate().filter(|(other, _)| *other != out);
-        let columns: Vec<&Vec<f64>> = others.map(|(_, own)| own).chain(&known).collect();
-        let left = beyond(left_out, &columns)?;
-        let mut values = left.iter();
-        for (p, channels) in &tables.rows {
-            for (&c, value) in channels.iter().zip(&mut values) {
-                squares[c] += (LEFT_OUT * value * tables.sigma[*p][c]).powi(2);
-                counts[c] += 1.0;
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ModelError {
+    /// Of what the points of one condition share.
+    pub(super) level: Vec<f64>,
+    /// Of what they differ by: the answer to a drive.
+    pub(super) change: Vec<f64>,
+}
+
+impl ModelError {
+    /// Each alternative is left out in turn. What the others, the uncertain inputs and the calibrations do not explain of it is
+    /// what two models differ by that are thought equally good; the truth, one more of them, is near these. The channels of one
+    /// harmonic share it, so that the reference of azimuth does not matter.
+    fn of(table: &PointTable, sets: &Sets) -> Result<Self, GapError> {
+        let width = table.channels.len();
+        let deviations: Grid = table.points.iter().map(|point| point.deviation.clone()).collect();
+        let tables = Tables::of_measured(table, deviations);
+        let away = |grid: &Grid| tables.signal(|p, c| grid[p][c] - table.predicted[p][c]).concat();
+        let alternatives: Vec<Vec<f64>> = table.alternatives.iter().map(away).collect();
+        let known: Vec<Vec<f64>> = table.uncertain.iter().map(away).collect();
+        let (mut level, mut change) = (vec![Mean::default(); width], vec![Mean::default(); width]);
+        for (out, left_out) in alternatives.iter().enumerate() {
+            let others = alternatives.iter().enumerate().filter(|(other, _)| *other != out);
+            let columns: Vec<&Vec<f64>> = others.map(|(_, own)| own).chain(&known).collect();
+            let left = beyond(left_out, &columns)?;
+            // values of every channel by set, in its unit
+            let mut values = vec![vec![Vec::new(); sets.count]; width];
+            let mut each = left.iter();
+            for (p, channels) in &tables.rows {
+                for (&c, value) in channels.iter().zip(&mut each) {
+                    values[c][sets.of_point[*p]].push(LEFT_OUT * value * tables.sigma[*p][c]);
+                }
+            }
+            for (c, of_set) in values.iter().enumerate() {
+                for own in of_set.iter().filter(|own| !own.is_empty()) {
+                    let mean = own.iter().sum::<f64>() / own.len() as f64;
+                    level[c].add(mean * mean, 1.0);
+                    let off: f64 = own.iter().map(|value| (value - mean).powi(2)).sum();
+                    change[c].add(off, own.len() as f64 - 1.0);
+                }
             }
         }
-    }
-    for (c, channel) in table.channels.iter().enumerate() {
-        if let Part::CosineOf(sine) = channel.part {
-            let both = (squares[c] + squares[sine], counts[c] + counts[sine]);
-            (squares[c], counts[c]) = both;
-            (squares[sine], counts[sine]) = both;
+        for (c, channel) in table.channels.iter().enumerate() {
+            if let Part::CosineOf(sine) = channel.part {
+                for own in [&mut level, &mut change] {
+                    let both = Mean {
+                        sum: own[c].sum + own[sine].sum,
+                        count: own[c].count + own[sine].count,
+                    };
+                    (own[c], own[sine]) = (both, both);
+                }
+            }
         }
+        let root = |own: &Mean| (own.sum / own.count.max(1.0)).sqrt();
+        Ok(Self {
+            level: level.iter().map(root).collect(),
+            change: change.iter().map(root).collect(),
+        })
     }
-    Ok(squares
-        .iter()
-        .zip(&counts)
-        .map(|(sum, count)| (sum / f64::max(*count, 1.0)).sqrt())
-        .collect())
+}
+
+/// A sum and how many values it is of.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    sum: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, sum: f64, count: f64) {
+        self.sum += sum;
+        self.count += count;
+    }
+}
+
+/// The points of one condition, such as control off and on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Sets {
+    /// Number of the set of every point.
+    of_point: Vec<usize>,
+    /// How many sets there are.
+    count: usize,
+}
+
+impl Sets {
+    fn of(table: &PointTable) -> Self {
+        let same: Vec<f64> = (0..table.conditions.len())
+            .map(|k| {
+                let own = table.points.iter().map(|point| point.conditions[k]);
+                let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                    (low.min(v), high.max(v))
+                });
+                SAME_OF_RANGE * (high - low)
+            })
+            .collect();
+        let mut first: Vec<&[f64]> = Vec::new();
+        let mut of_point = Vec::with_capacity(table.points.len());
+        for point in &table.points {
+            let own = &point.conditions[..];
+            let is_same = |other: &&[f64]| {
+                own.iter()
+                    .zip(*other)
+                    .zip(&same)
+                    .all(|((a, b), same)| (a - b).abs() <= same.max(SAME_OF_VALUE * a.abs()))
+            };
+            let place = first.iter().position(is_same).unwrap_or_else(|| {
+                first.push(own);
+                first.len() - 1
+            });
+            of_point.push(place);
+        }
+        Self { of_point, count: first.len() }
+    }
+
+    /// The measured points of every set that reads a channel at two points at least.
+    fn shared(&self, tables: &Tables<'_>, channel: usize) -> Vec<usize> {
+        let mut counts = vec![0; self.count];
+        for (p, channels) in &tables.rows {
+            if channels.contains(&channel) {
+                counts[self.of_point[*p]] += 1;
+            }
+        }
+        (0..self.count).filter(|&set| counts[set] > 1).collect()
+    }
+
+    /// The mean of a grid over the points of every set.
+    fn means(&self, grid: &Grid) -> Grid {
+        let width = grid.first().map_or(0, Vec::len);
+        let (mut sums, mut counts) = (vec![vec![0.0; width]; self.count], vec![0.0; self.count]);
+        for (row, &set) in grid.iter().zip(&self.of_point) {
+            counts[set] += 1.0;
+            for (sum, value) in sums[set].iter_mut().zip(row) {
+                *sum += value;
+            }
+        }
+        for (sum, count) in sums.iter_mut().zip(&counts) {
+            for value in sum {
+                *value /= *count;
+            }
+        }
+        self.of_point.iter().map(|&set| sums[set].clone()).collect()
+    }
 }
 
 /// A vector less what columns explain of it, each with a factor of standard deviation 1.
@@ -91,8 +200,9 @@ enum Shape<'a> {
 }
 
 impl Shape<'_> {
-    fn at(&self, table: &PointTable, point: usize, channel: usize) -> f64 {
-        let predicted = |c: usize| table.predicted[point][c];
+    /// Of what the channels are in a grid.
+    fn at(&self, table: &PointTable, grid: &Grid, point: usize, channel: usize) -> f64 {
+        let predicted = |c: usize| grid[point][c];
         match self {
             Self::Zero(own) => f64::from(*own == channel),
             Self::Gain(own) if own.contains(&channel) => predicted(channel),
@@ -117,36 +227,42 @@ fn by_instrument(table: &PointTable) -> Vec<Vec<usize>> {
 pub(super) struct Floor {
     /// Standard deviation of every value, error of the simulation included.
     pub(super) sigma: Grid,
-    /// Error of the simulation by channel, in its unit, that alternatives show.
-    pub(super) model_error: Vec<f64>,
+    /// Error of the simulation that alternatives show.
+    pub(super) model_error: ModelError,
+    /// Points of one condition.
+    sets: Sets,
     /// Smooth error of the simulation by channel, in its unit.
     smooth_error: Vec<f64>,
 }
 
+/// Root of the mean square of some channels of a grid.
+fn size(grid: &Grid, channels: &[usize]) -> f64 {
+    let of =
+        |c: usize| rotor_base::mean_square(&grid.iter().map(|row| row[c]).collect::<Vec<f64>>());
+    channels.iter().map(|&c| of(c)).sum::<f64>().sqrt()
+}
+
 impl Floor {
     pub(super) fn of(table: &PointTable) -> Result<Self, GapError> {
-        let model_error = model_error(table)?;
-        let of_point = |deviation: &Vec<f64>| -> Vec<f64> {
-            deviation.iter().zip(&model_error).map(|(own, model)| own.hypot(*model)).collect()
-        };
-        let sigma = table.points.iter().map(|point| of_point(&point.deviation)).collect();
+        let sets = Sets::of(table);
+        let model_error = ModelError::of(table, &sets)?;
+        let ModelError { level, change } = &model_error;
+        let mut sigma: Grid = table.points.iter().map(|point| point.deviation.clone()).collect();
+        let tables = Tables::of_measured(table, Grid::new());
+        for c in 0..table.channels.len() {
+            let shared = sets.shared(&tables, c);
+            for (row, set) in sigma.iter_mut().zip(&sets.of_point) {
+                // what no other point of its condition shares is an error of its own
+                let own = if shared.contains(set) { change[c] } else { level[c] };
+                row[c] = row[c].hypot(own);
+            }
+        }
         let smooth = |(c, model): (usize, &f64)| {
             let own: Vec<f64> = table.points.iter().map(|point| point.deviation[c]).collect();
             model.max(SMOOTH * rotor_base::mean_square(&own).sqrt())
         };
-        let smooth_error = model_error.iter().enumerate().map(smooth).collect();
-        Ok(Self { sigma, model_error, smooth_error })
-    }
-
-    /// Error of the simulation over what it predicts, of the channels of an instrument; no larger than 1.
-    fn relative_error(&self, table: &PointTable, channels: &[usize]) -> f64 {
-        let (mut error, mut size) = (0.0, 0.0);
-        for &c in channels {
-            let predicted: Vec<f64> = table.predicted.iter().map(|row| row[c]).collect();
-            size += rotor_base::mean_square(&predicted);
-            error += self.model_error[c].powi(2);
-        }
-        if size > error { (error / size).sqrt() } else { f64::from(u8::from(error > 0.0)) }
+        let smooth_error = level.iter().enumerate().map(smooth).collect();
+        Ok(Self { sigma, model_error, sets, smooth_error })
     }
 
     /// Columns of the nuisance, each as a signal.
@@ -164,15 +280,34 @@ impl Floor {
                 columns.push(tables.signal(|p, c| at(c) * varied[p]));
             }
         }
+        let ModelError { level, change } = &self.model_error;
+        for (own, error) in level.iter().enumerate().filter(|(_, error)| **error > 0.0) {
+            for set in self.sets.shared(tables, own) {
+                let is_of = |p: usize, c: usize| c == own && self.sets.of_point[p] == set;
+                columns.push(tables.signal(|p, c| if is_of(p, c) { *error } else { 0.0 }));
+            }
+        }
+        let means = self.sets.means(base);
+        let less = |(a, b): (&f64, &f64)| a - b;
+        let changes: Grid = base
+            .iter()
+            .zip(&means)
+            .map(|(row, mean)| row.iter().zip(mean).map(less).collect())
+            .collect();
         for (instrument, channels) in table.instruments.iter().zip(by_instrument(table)) {
-            let wrong = self.relative_error(table, &channels);
-            // a simulation that is off by so much may be so by a factor and a turn
-            let turned = Shape::Turned(&channels);
-            let gain = instrument.gain.hypot(wrong);
-            for (shape, size) in [(Shape::Gain(&channels), gain), (turned, wrong)] {
+            let mut add = |shape: Shape<'_>, grid: &Grid, size: f64| {
                 if size > 0.0 {
-                    columns.push(tables.signal(|p, c| size * shape.at(table, p, c)));
+                    columns.push(tables.signal(|p, c| size * shape.at(table, grid, p, c)));
                 }
+            };
+            add(Shape::Gain(&channels), base, instrument.gain);
+            // a simulation that is off by so much may be so by a factor and a turn
+            for (grid, error) in [(&means, level), (&changes, change)] {
+                let error = channels.iter().map(|&c| error[c].powi(2)).sum::<f64>().sqrt();
+                let wrong =
+                    if error > 0.0 { (error / size(grid, &channels)).min(1.0) } else { 0.0 };
+                add(Shape::Gain(&channels), grid, wrong);
+                add(Shape::Turned(&channels), grid, wrong);
             }
             if instrument.zero > 0.0 {
                 for &own in &channels {
@@ -221,9 +356,9 @@ impl Floor {
         let varied = varied(table);
         let mut all = Vec::new();
         for shape in &shapes {
-            all.push(tables.signal(|p, c| shape.at(table, p, c)));
+            all.push(tables.signal(|p, c| shape.at(table, &table.predicted, p, c)));
             for varied in &varied {
-                all.push(tables.signal(|p, c| varied[p] * shape.at(table, p, c)));
+                all.push(tables.signal(|p, c| varied[p] * shape.at(table, &table.predicted, p, c)));
             }
         }
         all.retain(|signal| signal.iter().flatten().any(|value| *value != 0.0));

@@ -148,8 +148,12 @@ pub(crate) struct Occasion<'a> {
     pub(crate) instruments: &'a [String],
     /// Whether an actuator with hysteresis is there that the simulation lacks.
     pub(crate) has_hysteretic: bool,
+    /// Whether the drive of the case is an ideal one.
+    pub(crate) is_ideal: bool,
     /// Whether flaps are driven at any point.
     pub(crate) is_driven: bool,
+    /// Middle amplitude of the driven points, V.
+    pub(crate) middle_volt: f64,
     /// Lag of that actuator by its part of the motion, deg, at the middle amplitude of the points.
     pub(crate) lag_deg: &'a [(f64, f64)],
 }
@@ -186,7 +190,6 @@ pub const LIBRARY: [&str; 25] = [
 /// The causes for a model and its channels.
 pub(crate) fn library(o: &Occasion<'_>) -> Vec<RotorCause> {
     let single = [
-        drive::actuator_hysteresis(o),
         drive::actuator_gain(o),
         aerodynamics::flap_effectiveness(o),
         blades::stiffness_flap(),
@@ -210,7 +213,8 @@ pub(crate) fn library(o: &Occasion<'_>) -> Vec<RotorCause> {
         condition::rotor_speed(),
         condition::air_density(),
     ];
-    let mut all = single.to_vec();
+    let mut all = drive::actuator_hysteresis(o).to_vec();
+    all.extend(single);
     all.extend(blades::blade_dissimilarity(o));
     all.extend(reading::sensor_gains(o));
     all
@@ -230,7 +234,9 @@ mod tests {
             model: &model,
             instruments: &instruments,
             has_hysteretic: true,
+            is_ideal: true,
             is_driven: true,
+            middle_volt: 30.0,
             lag_deg: &lag_deg,
         };
         let all = library(&occasion);

@@ -5,6 +5,7 @@ mod everyday;
 mod hidden_effects;
 mod ladder;
 mod metamorphic;
+mod rotor_points;
 mod shipped_bench;
 mod threads;
 mod three_sets;
