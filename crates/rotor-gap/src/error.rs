@@ -1,5 +1,6 @@
 //! What can go wrong in the diagnosis of a rotor.
 
+use flap_aero::AeroError;
 use model_gap::GapError;
 use rotor_study::StudyError;
 
@@ -38,6 +39,24 @@ pub enum RotorGapError {
         point: String,
         /// Why.
         source: Box<StudyError>,
+    },
+    /// A mode that was measured and that the simulated blade does not have.
+    #[error(
+        "the blade has no mode `{mode}`: it has {found}; raise `structure.modes` or `structure.elements` of the case"
+    )]
+    Mode {
+        /// The mode.
+        mode: String,
+        /// What it has.
+        found: String,
+    },
+    /// The section at a motion.
+    #[error("{point}: {source}")]
+    Section {
+        /// The motion.
+        point: String,
+        /// Why.
+        source: AeroError,
     },
     /// The engine.
     #[error(transparent)]

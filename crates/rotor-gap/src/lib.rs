@@ -1,30 +1,45 @@
-//! Rotors as data that discovery works on: points of test of a sweep, causes, diagnosis.
+//! Rotors as data that discovery works on: points of test, causes, diagnosis.
 //!
 //! Floor 5: it is handed a case and what was measured, and gives findings back. It knows no file and no terminal.
 //!
-//! | idea | module |
+//! | kind of data | module |
 //! |---|---|
-//! | what a sweep measured, and what its columns mean | `sweep`, `columns` |
-//! | a rotor with its drives and the way its loads are read | `model` |
-//! | that rotor at a point of test | `flight` |
-//! | the cause library: what a rotor may lack | `causes` |
-//! | inputs of a case that are not known well, other levels of fidelity | `spread` |
-//! | a diagnosis | `diagnosis` |
+//! | hub loads, controls, airloads of a sweep | [`rotor`] |
+//! | frequencies of a blade | [`blade`] |
+//! | loads of an oscillating section | [`section`] |
 
-mod causes;
-mod columns;
+pub mod blade;
 mod diagnosis;
 mod error;
-mod flight;
-mod model;
-mod spread;
-mod sweep;
+pub mod rotor;
+pub mod section;
 
-pub use causes::{LIBRARY, RotorCause, RotorParameter};
-pub use columns::{Column, Load, PartOf, Reading, Setting, check_columns};
-pub use diagnosis::{RotorDiagnosis, RotorQuestion, diagnose};
+use measured_data::problem::{Fault, Problems};
+use measured_data::{DatasetKind, SweepData};
+
+pub use diagnosis::{CaseDiagnosis, CaseQuestion};
 pub use error::RotorGapError;
-pub use flight::predict;
-pub use model::{FlapDriveModel, LoadPath, RotorModel};
-pub use spread::{USUAL_UNCERTAIN, alternatives, moved, usual_uncertain};
-pub use sweep::{Aside, Sweep, SweepChannel, SweepPoint};
+pub use rotor::{
+    Aside, Column, FlapDriveModel, LIBRARY, Load, LoadPath, PartOf, Reading, RotorCause,
+    RotorDiagnosis, RotorModel, RotorQuestion, Setting, Sweep, SweepChannel, SweepPoint,
+    USUAL_UNCERTAIN, alternatives, diagnose, moved, predict, stated, usual_uncertain,
+};
+
+/// Checks the columns of points of any kind.
+///
+/// # Errors
+/// Every name, word and cell that says nothing, at its place.
+pub fn check_columns(data: &SweepData) -> Result<(), Problems> {
+    let table = &data.points.table;
+    let of_kind = match data.kind {
+        DatasetKind::BladeFrequencies => blade::Frequencies::of(&data.points).map(drop),
+        DatasetKind::SectionLoops => section::SectionLoads::of(&data.points).map(drop),
+        _ => return rotor::check_columns(&data.points),
+    };
+    of_kind.map_err(|error| {
+        let name = if let RotorGapError::Column { name, .. } = &error { name } else { "" };
+        let mut problems = Problems::default();
+        problems.push(table.column_place(name), Fault::Refused { message: error.to_string() });
+        problems
+    })
+}

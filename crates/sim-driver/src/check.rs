@@ -11,6 +11,7 @@ use crate::identification::gain;
 use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::stored_actuator::{GainRule, actuator_warnings, read_actuator};
+use measured_data::DatasetKind;
 use preisach_dyn::identify::Settings;
 use rotor_gap::check_columns;
 use serde::Serialize;
@@ -30,6 +31,10 @@ pub enum FileKind {
     ReversalCurves,
     /// A data folder of points of test of a rotor.
     RotorSweep,
+    /// A data folder of frequencies of a blade.
+    BladeFrequencies,
+    /// A data folder of loads of an oscillating section.
+    SectionLoops,
     /// An actuator written by `hhc identify`.
     Actuator,
 }
@@ -152,9 +157,14 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
             (FileKind::ReversalCurves, summary)
         }
         DataSet::Sweep(data) => {
-            check_columns(&data.points)?;
-            let (points, columns) = (data.points.ids.len(), data.points.columns.len());
-            (FileKind::RotorSweep, format!("{}: {points} points, {columns} columns", data.title))
+            let kind = match data.kind {
+                DatasetKind::BladeFrequencies => FileKind::BladeFrequencies,
+                DatasetKind::SectionLoops => FileKind::SectionLoops,
+                _ => FileKind::RotorSweep,
+            };
+            check_columns(data)?;
+            let (rows, columns) = (data.points.ids.len(), data.points.columns.len());
+            (kind, format!("{}: {rows} rows, {columns} columns", data.title))
         }
     };
     Ok(CheckResult { file, kind, summary, warnings })
@@ -168,6 +178,8 @@ impl Printable for CheckResult {
             FileKind::GenericLoop => "generic loops",
             FileKind::ReversalCurves => "reversal curves",
             FileKind::RotorSweep => "points of a rotor",
+            FileKind::BladeFrequencies => "frequencies of a blade",
+            FileKind::SectionLoops => "loads of a section",
             FileKind::Actuator => "actuator",
         };
         format!("{}: {kind}, no problems ({})", self.file, self.summary)

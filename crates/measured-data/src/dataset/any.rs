@@ -17,7 +17,7 @@ pub enum DataSet {
     Loops(LoopData),
     /// Kind `ReversalCurves`.
     Curves(CurveData),
-    /// Kind `RotorSweep`.
+    /// Points of test: `RotorSweep`, `BladeFrequencies`, `SectionLoops`.
     Sweep(SweepData),
 }
 
@@ -53,7 +53,7 @@ pub fn read_dataset(folder: &Folder) -> Result<DataSet, Problems> {
     match kind {
         Some(DatasetKind::GenericLoop) => read_loops(folder).map(DataSet::Loops),
         Some(DatasetKind::ReversalCurves) => read_curves(folder).map(DataSet::Curves),
-        Some(DatasetKind::RotorSweep) => read_sweep(folder).map(DataSet::Sweep),
         Some(DatasetKind::ActuatorBench) | None => read_bench(folder).map(DataSet::Bench),
+        Some(kind) => read_sweep(folder, kind).map(DataSet::Sweep),
     }
 }

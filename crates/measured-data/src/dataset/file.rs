@@ -17,6 +17,28 @@ pub enum DatasetKind {
     ReversalCurves,
     /// Points of test of a rotor: one table, a row for each point.
     RotorSweep,
+    /// Frequencies of a blade: one table, a row for each mode at each rotor speed.
+    BladeFrequencies,
+    /// Loads of an oscillating section: one table, a row for each motion, or histories.
+    SectionLoops,
+}
+
+impl DatasetKind {
+    /// Kinds of one table of points, each with columns that all of its tables have.
+    pub const OF_POINTS: [(Self, &'static [&'static str]); 3] = [
+        (Self::RotorSweep, &["advance_ratio"]),
+        (Self::BladeFrequencies, &["rotor_speed_rpm", "mode", "frequency_hz"]),
+        (Self::SectionLoops, &["reduced_frequency", "mach"]),
+    ];
+
+    /// Columns of such a table that hold words.
+    pub fn words(self) -> &'static [&'static str] {
+        match self {
+            Self::BladeFrequencies => &["mode"],
+            Self::SectionLoops => &["motion", "loop"],
+            _ => &[],
+        }
+    }
 }
 
 /// What a run is for.

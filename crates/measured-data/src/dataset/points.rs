@@ -12,7 +12,7 @@ const POINT: &str = "point";
 const GROUP: &str = "group";
 /// Column of numbers of conditions: rows of one number repeat it.
 const REPEAT: &str = "repeat";
-/// Ending of the column of standard deviations of another.
+/// Ending of the column of standard deviations of another; it may stand before the unit.
 const DEVIATION: &str = "_sd";
 /// Part of the rms of a column, or of its prediction, that is the least scatter: repeats or a prediction may agree to the last
 /// digit.
@@ -77,7 +77,15 @@ impl PointData {
     /// As [`PointCsv::read`]; a standard deviation that is not above zero or is missing beside a reading, a name of a point
     /// that is there twice, a number of a sweep or a repeat that is blank: each with its line.
     pub fn read(source: &Source) -> Result<Self, Problems> {
-        let table = PointCsv::read(source, &[POINT])?;
+        Self::read_with(source, &[])
+    }
+
+    /// The same with columns that hold words: they stand in [`Self::table`] alone.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(source: &Source, words: &[&str]) -> Result<Self, Problems> {
+        let table = PointCsv::read(source, &[&[POINT], words].concat())?;
         let mut problems = Problems::default();
         let rows = table.rows();
         let ids =
@@ -99,18 +107,18 @@ impl PointData {
         let given = numbered(GROUP, &mut problems).or_else(|| repeats.clone());
         let groups = given.map_or_else(|| (0..rows).collect(), |own| places(&own));
         let repeats = repeats.map(|own| places(&own));
-        let is_own = |name: &&str| ![POINT, GROUP, REPEAT].contains(name);
+        let is_own = |name: &&str| ![POINT, GROUP, REPEAT].contains(name) && !words.contains(name);
         let names: Vec<&str> = table.names().filter(is_own).collect();
         let mut columns = Vec::new();
         for name in &names {
-            let is_deviation = name.strip_suffix(DEVIATION).is_some_and(|of| names.contains(&of));
-            if is_deviation {
+            if names.iter().any(|of| deviation_names(of).iter().any(|own| own == name)) {
                 continue;
             }
             let values = table.column(name).unwrap_or_default();
-            let beside = format!("{name}{DEVIATION}");
-            let scatter = match table.column(&beside) {
-                Some(stated) => {
+            let beside = deviation_names(name).into_iter().find(|own| table.has(own));
+            let stated = beside.and_then(|own| Some((table.column(&own)?, own)));
+            let scatter = match stated {
+                Some((stated, beside)) => {
                     Scatter::Stated(deviations(&table, &beside, (&values, &stated), &mut problems))
                 }
                 None => repeats
@@ -122,6 +130,12 @@ impl PointData {
         }
         problems.into_result(Some(Self { ids, groups, columns, table }))
     }
+}
+
+/// What the column of standard deviations of another may be called: `f_hz_sd` or `f_sd_hz` of `f_hz`.
+fn deviation_names(of: &str) -> Vec<String> {
+    let before_unit = of.rsplit_once('_').map(|(stem, unit)| format!("{stem}{DEVIATION}_{unit}"));
+    std::iter::once(format!("{of}{DEVIATION}")).chain(before_unit).collect()
 }
 
 /// Places of numbers among those that differ, in their order.
@@ -186,6 +200,20 @@ mod tests {
 
     fn read(text: &str) -> Result<PointData, Problems> {
         PointData::read(&Source { name: "a.csv".into(), text: text.into() })
+    }
+
+    #[test]
+    fn deviations_may_stand_before_the_unit() {
+        let data = read("mu,f_hz,f_sd_hz\n0.1,10,0.5\n0.2,11,0.25\n").unwrap();
+        assert_eq!(data.columns.len(), 2);
+        assert_eq!(data.columns[1].scatter, Scatter::Stated(vec![0.5, 0.25]));
+        let words = Source { name: "a.csv".into(), text: "mode,f_hz\nflap 1,10\n".into() };
+        let data = PointData::read_with(&words, &["mode"]).unwrap();
+        assert_eq!(
+            (data.columns.len(), data.table.text_column("mode").unwrap()),
+            (1, vec!["flap 1".to_owned()])
+        );
+        assert!(PointData::read(&words).is_err());
     }
 
     #[test]

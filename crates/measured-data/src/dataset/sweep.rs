@@ -1,4 +1,4 @@
-//! Points of test of a rotor as a data folder.
+//! Points of test as a data folder.
 
 use super::file::DatasetKind;
 use super::open::{OpenDataset, run_field};
@@ -6,9 +6,11 @@ use super::points::PointData;
 use crate::files::Folder;
 use crate::problem::{Fault, Problem, Problems};
 
-/// Points of test of a rotor, checked.
+/// Points of test, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepData {
+    /// Kind of the folder: one of [`DatasetKind::OF_POINTS`].
+    pub kind: DatasetKind,
     /// One line about the data.
     pub title: String,
     /// Folder the data come from, for messages and results.
@@ -21,19 +23,19 @@ pub struct SweepData {
     pub content_hash: String,
 }
 
-/// Reads a data folder of kind `RotorSweep`: one table, a row for each point.
+/// Reads a data folder of a kind of [`DatasetKind::OF_POINTS`]: one table, a row for each point.
 ///
 /// # Errors
 /// Every problem of `dataset.ron` and of the table, each with its line.
-pub fn read_sweep(folder: &Folder) -> Result<SweepData, Problems> {
-    let mut open = OpenDataset::open(folder, DatasetKind::RotorSweep)?;
+pub fn read_sweep(folder: &Folder, kind: DatasetKind) -> Result<SweepData, Problems> {
+    let mut open = OpenDataset::open(folder, kind)?;
     let runs = open.dataset.runs.clone();
     if runs.len() > 1 {
-        let message = "a sweep is one table: give its points as rows of one file, with `group` for those of one sweep";
+        let message = "points are one table: give them as rows of one file, with `group` for those of one sweep";
         open.problems.push(open.index.place("runs[1]"), Fault::Other(message.to_owned()));
     }
     let source = runs.first().and_then(|run| open.read(&run.file, &run_field(0, "file")));
-    let points = source.and_then(|source| match PointData::read(&source) {
+    let points = source.and_then(|source| match PointData::read_with(&source, kind.words()) {
         Ok(points) => Some(points),
         Err(more) => {
             open.problems.append(more);
@@ -44,6 +46,7 @@ pub fn read_sweep(folder: &Folder) -> Result<SweepData, Problems> {
     let OpenDataset { dataset, problems, warnings, .. } = open;
     let title = dataset.title;
     problems.into_result(points.map(|points| SweepData {
+        kind,
         title,
         folder,
         points,

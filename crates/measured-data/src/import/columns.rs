@@ -156,7 +156,7 @@ pub(super) fn choose(
     let kind = wanted.unwrap_or(found);
     let columns = match kind {
         ImportKind::ActuatorBench => bench_columns(&data)?,
-        ImportKind::GenericLoop | ImportKind::RotorSweep => loop_columns(&data, options)?,
+        _ => loop_columns(&data, options)?,
     };
     let is_taken = |source: usize| columns.iter().any(|taken| taken.source == source);
     left_out.extend(data.iter().filter(|(i, _)| !is_taken(*i)).map(|(_, c)| c.label()));

@@ -297,7 +297,10 @@ impl Parts {
         let place = || source.place().field(&labels[0]);
         let (least, largest) = limits(&gathered.columns[0]);
         match choice.kind {
-            ImportKind::GenericLoop | ImportKind::RotorSweep => {
+            ImportKind::GenericLoop
+            | ImportKind::RotorSweep
+            | ImportKind::BladeFrequencies
+            | ImportKind::SectionLoops => {
                 check_record(&record, problems, warnings);
                 let (unit, remedy) = (channels[0].unit.symbol, "correct --range, or its unit");
                 let outside =

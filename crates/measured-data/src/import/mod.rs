@@ -57,6 +57,10 @@ pub enum ImportKind {
     GenericLoop,
     /// Points of test of a rotor, one row each.
     RotorSweep,
+    /// Frequencies of a blade, one row for each mode at each rotor speed.
+    BladeFrequencies,
+    /// Loads of an oscillating section, one row for each motion, or histories.
+    SectionLoops,
 }
 
 /// What to import and how.
@@ -121,8 +125,8 @@ pub fn import(request: &ImportRequest) -> Result<ImportResult, DataError> {
         return Err(DataError::WouldOverwrite { path: request.out.clone() });
     }
     check_request(request)?;
-    if let (true, Some(path)) = (sweep::is_asked_for(request), request.files.first()) {
-        return sweep::import_sweep(request, path);
+    if let (Some(kind), Some(path)) = (sweep::asked_for(request), request.files.first()) {
+        return sweep::import_sweep(request, path, kind);
     }
     let mut problems = Problems::default();
     let mut sources = Vec::new();
@@ -244,9 +248,8 @@ fn folder_kind(imported: &Imported) -> DatasetKind {
         Imported::Curves(_) => DatasetKind::ReversalCurves,
         Imported::Record(table) => match table.choice.kind {
             ImportKind::ActuatorBench => DatasetKind::ActuatorBench,
-            ImportKind::GenericLoop => DatasetKind::GenericLoop,
             // points are no record: they are imported before
-            ImportKind::RotorSweep => DatasetKind::RotorSweep,
+            _ => DatasetKind::GenericLoop,
         },
     }
 }

@@ -66,7 +66,7 @@ impl PointTable {
         let generic = Floor::generic(&tables);
         let mut candidates = tables.candidates();
         let (values, parameters) = (self.values(), self.parameters());
-        if values <= parameters {
+        if values < parameters {
             for own in &mut candidates {
                 own.blocked.get_or_insert_with(|| {
                     format!("{values} values do not choose between {parameters} parameters: measure more points or channels")

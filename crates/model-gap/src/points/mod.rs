@@ -9,15 +9,19 @@
 //! `p` counts points, `c` channels. `e` is straight in its amount `x` between the tables given, a parabola where there are
 //! two. Every value is taken over its standard deviation: N, N m and degrees are never added.
 
+mod cause;
 mod finding;
 mod floor;
+mod kind;
 mod names;
 mod next;
 mod predicted;
 mod table;
 mod told;
 
+pub use cause::{CauseParameter, PointCause};
 pub use finding::{ChannelGain, PointFinding};
+pub use kind::{KindFinding, KindQuestion, PointKind};
 pub use names::{channels_of, lasting};
 pub use next::NextPoints;
 pub use table::{

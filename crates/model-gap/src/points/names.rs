@@ -25,8 +25,8 @@ const UNITS: [(&str, &str); 20] = [
     ("r", "R"),
     ("percent", "%"),
 ];
-const COSINE: &str = "_cos";
-const SINE: &str = "_sin";
+/// What the two of a harmonic are called: cosine and sine, or real and imaginary part.
+const PAIRS: [[&str; 2]; 2] = [["_cos", "_sin"], ["_re", "_im"]];
 
 /// A text as one that lives as long as the program: what names of suspects must.
 pub fn lasting(text: &str) -> &'static str {
@@ -45,24 +45,20 @@ pub fn channels_of(names: &[&str]) -> (Vec<Channel>, Vec<String>) {
             instruments.len() - 1
         })
     };
-    let partner = |name: &str, own: &str, other: &str| {
-        let wanted = name.replacen(own, other, 1);
-        names.iter().position(|name| *name == wanted).filter(|_| name.contains(own))
-    };
+    let place = |wanted: &str| names.iter().position(|name| *name == wanted);
     let channel = |name: &&str| {
         let last = name.rsplit('_').next().unwrap_or_default();
         let unit = UNITS.iter().find(|(own, _)| *own == last).map_or("1", |(_, shown)| *shown);
-        let sine = partner(name, COSINE, SINE);
-        let part = match (sine, partner(name, SINE, COSINE)) {
-            (Some(sine), _) => Part::CosineOf(sine),
-            (None, Some(cosine)) => Part::SineOf(cosine),
-            (None, None) => Part::Scalar,
-        };
-        let of = match part {
-            Part::CosineOf(_) => name.replacen(COSINE, "", 1),
-            Part::SineOf(_) => name.replacen(SINE, "", 1),
-            Part::Scalar => (*name).to_owned(),
-        };
+        let in_pair = PAIRS.iter().find_map(|[first, second]| {
+            if name.contains(first) {
+                let sine = place(&name.replacen(first, second, 1))?;
+                return Some((Part::CosineOf(sine), name.replacen(first, "", 1)));
+            }
+            let cosine =
+                place(&name.replacen(second, first, 1)).filter(|_| name.contains(second))?;
+            Some((Part::SineOf(cosine), name.replacen(second, "", 1)))
+        });
+        let (part, of) = in_pair.unwrap_or_else(|| (Part::Scalar, (*name).to_owned()));
         Channel {
             name: (*name).to_owned(),
             unit: unit.to_owned(),
@@ -83,6 +79,7 @@ mod tests {
         let (channels, instruments) =
             channels_of(&["fz_n4_cos_N", "theta0_deg", "fz_n4_sin_N", "mx_n3_cos_Nm", "ratio"]);
         assert_eq!(instruments, ["fz_n4_N", "theta0_deg", "mx_n3_cos_Nm", "ratio"]);
+        assert_eq!(channels_of(&["cn_re", "cm_re", "cn_im"]).1, ["cn", "cm_re"]);
         let of = |c: usize| (channels[c].unit.as_str(), channels[c].instrument, channels[c].part);
         assert_eq!(of(0), ("N", 0, Part::CosineOf(2)));
         assert_eq!(of(2), ("N", 0, Part::SineOf(0)));

@@ -2,6 +2,9 @@
 
 use crate::{Class, GapError};
 
+/// Part of a deviation by which a suspect moves a reading at least, if it moves it at all.
+const LEAST_MOVE: f64 = 1e-3;
+
 /// Values by point and channel.
 pub type Grid = Vec<Vec<f64>>;
 
@@ -179,10 +182,19 @@ impl PointTable {
         self.points.iter().flat_map(|point| &point.measured).flatten().count()
     }
 
-    /// Parameters of all suspects that the data may show.
+    /// Parameters of all suspects that move any reading at all.
     pub fn parameters(&self) -> usize {
+        let moves = |grid: &Grid| {
+            self.points.iter().zip(grid).zip(&self.predicted).any(|((point, row), base)| {
+                let each = point.measured.iter().zip(&point.deviation).zip(row.iter().zip(base));
+                each.into_iter().any(|((read, deviation), (value, base))| {
+                    read.is_some() && (value - base).abs() > LEAST_MOVE * deviation
+                })
+            })
+        };
         let may_show = self.suspects.iter().filter(|own| own.blocked.is_none());
-        may_show.map(|own| own.parameters.len()).sum()
+        let of_all = may_show.flat_map(|own| &own.parameters);
+        of_all.filter(|own| own.tables.iter().any(|table| moves(&table.1))).count()
     }
 
     /// Checks shapes and numbers.

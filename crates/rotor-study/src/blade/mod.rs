@@ -10,7 +10,7 @@ pub use dissimilar::{UnlikeBladeLine, UnlikeLine, each_unlike_blade, unlike_line
 pub use loads::{LoadLine, MomentLine, StationLine, station_lines};
 pub use mean_loads::MeanLoads;
 pub use modes::{
-    AboutState, FAN_SPEEDS, ModeLine, ModesQuestion, ModesResult, SteadyTip, numbered,
-    rotating_modes,
+    AboutState, FAN_SPEEDS, ModeLine, ModesQuestion, ModesResult, SteadyTip, modes_at_speeds,
+    numbered, rotating_modes,
 };
 pub use stability::{MotionLine, StabilityLine};

@@ -3,6 +3,7 @@
 use crate::case::Case;
 use crate::error::StudyError;
 use nalgebra::DVector;
+use rayon::prelude::*;
 use rotor_fem::{
     AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
     ModeKind, ModerateBlade, ModerateModel, ModerateSpec, StaticSettings, deflected_modes, modes,
@@ -83,13 +84,25 @@ pub struct ModesResult {
 /// # Errors
 /// [`StudyError::Blade`].
 pub fn rotating_modes(case: &Case, question: &ModesQuestion) -> Result<ModesResult, StudyError> {
-    let fail = |source: FemError| StudyError::Blade { field: "rotor".to_owned(), source };
-    let blade = case.blade_with_flaps()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
-    let at = |ratio: f64| modes_at(case, question, &blade, ratio).map_err(fail);
-    let fan = question.speed_ratios.iter().map(|ratio| at(*ratio)).collect::<Result<_, _>>()?;
-    let nominal = at(1.0)?;
+    let mut fan = modes_at_speeds(case, question, &[&[1.0], &question.speed_ratios[..]].concat())?;
+    let nominal = fan.remove(0);
     let warnings = undamped_at_a_harmonic(case, &nominal.modes);
     Ok(ModesResult { warnings, fan, ..nominal })
+}
+
+/// Rotating modes of a case's blade at rotor speeds over the nominal one, those of the question aside.
+///
+/// # Errors
+/// [`StudyError::Blade`].
+pub fn modes_at_speeds(
+    case: &Case,
+    question: &ModesQuestion,
+    speed_ratios: &[f64],
+) -> Result<Vec<ModesResult>, StudyError> {
+    let fail = |source: FemError| StudyError::Blade { field: "rotor".to_owned(), source };
+    let blade = case.blade_with_flaps()?.with_pitch_rad(question.pitch_rad).map_err(fail)?;
+    let at = |ratio: &f64| modes_at(case, question, &blade, *ratio).map_err(fail);
+    speed_ratios.par_iter().map(at).collect()
 }
 
 /// Lag modes at a harmonic of the rotor speed that nothing damps.

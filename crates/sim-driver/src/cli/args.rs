@@ -210,8 +210,8 @@ pub struct ImportArgs {
     /// What the files are; recognised by their first bytes if left out.
     #[arg(long = "as", value_parser = choice_parser::<SourceKind>(), value_name = "FORMAT")]
     pub source: Option<SourceKind>,
-    /// Kind of the data folder; an actuator bench if there are command and displacement, a sweep of a rotor
-    /// if there is an advance ratio, else a generic loop, if left out.
+    /// Kind of the data folder; left out, an actuator bench if there are command and displacement, points
+    /// of test if there are their columns, else a generic loop.
     #[arg(long, value_parser = choice_parser::<ImportKind>())]
     pub kind: Option<ImportKind>,
     /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with

@@ -6,8 +6,8 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis, PointStory,
-    Question, Record, Records, RotorPoints, Specimens, Stage, Story, TableData, climb, extended,
+    CasePoints, Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis,
+    PointStory, Question, Record, Records, Specimens, Stage, Story, TableData, climb, extended,
     plan, read_table, usual_runs,
 };
 use crate::files::{
@@ -18,7 +18,7 @@ use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
-use measured_data::Accuracy;
+use measured_data::{Accuracy, DatasetKind};
 use preisach_dyn::ActuatorModel;
 use std::path::{Path, PathBuf};
 
@@ -36,9 +36,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
         return planned(args);
     };
     if let [data] = &args.data[..]
-        && let Some(sweep) = sweep_of(data)?
+        && let Some(sweep) = points_of(data)?
     {
-        return rotor(args, model, &sweep, output);
+        return of_points(args, model, &sweep, output);
     }
     if let [data] = &args.data[..] {
         return print(&Story::of(&found_in(args, (model, data), output)?).render(form)?);
@@ -59,15 +59,17 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     print(&specimens.render(form)?)
 }
 
-/// The sweep of a folder; none of another kind of data.
-fn sweep_of(data: &Path) -> Result<Option<SweepData>, SimError> {
+/// The points of a folder; none of another kind of data.
+fn points_of(data: &Path) -> Result<Option<SweepData>, SimError> {
     let folder = Folder::Disk(data.to_path_buf());
-    let is_sweep = folder.read(DATASET).is_ok_and(|source| source.text.contains("RotorSweep"));
-    Ok(if is_sweep { Some(read_sweep(&folder)?) } else { None })
+    let Ok(source) = folder.read(DATASET) else { return Ok(None) };
+    let is_named = |own: &(DatasetKind, &[&str])| source.text.contains(&format!("{:?}", own.0));
+    let kind = DatasetKind::OF_POINTS.into_iter().find(is_named);
+    Ok(kind.map(|(kind, _)| read_sweep(&folder, kind)).transpose()?)
 }
 
-/// Says what the simulation of a rotor lacks, from points of test.
-fn rotor(
+/// Says what the simulation of a case lacks, from points of test.
+fn of_points(
     args: &DiagnoseArgs,
     case: &Path,
     sweep: &SweepData,
@@ -78,7 +80,7 @@ fn rotor(
     warn(&sweep.warnings, form);
     let progress = Progress::new(DIAGNOSIS);
     let begun = |percent: usize, what: &str| progress.begin(DIAGNOSIS * percent / 100, what);
-    let found = RotorPoints::of(&case, sweep, &args.only, &begun);
+    let found = CasePoints::of(&case, sweep, &args.only, &begun);
     progress.finish();
     let found = found?;
     write_texts(output, found.files()?)?;

@@ -1,9 +1,9 @@
-//! Diagnoses of points of test: with a rotor, or with anyone's simulator as tables.
+//! Diagnoses of points of test: with a case, or with anyone's simulator as tables.
 
-mod rotor;
+mod case;
 mod story;
 mod table;
 
-pub use rotor::RotorPoints;
+pub use case::CasePoints;
 pub use story::{PointDiagnosis, PointStory};
 pub use table::{TableData, read_table};

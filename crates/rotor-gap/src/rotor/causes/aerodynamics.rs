@@ -1,12 +1,12 @@
 //! What the aerodynamics may lack.
 
-use super::{Occasion, RotorCause, RotorParameter};
-use model_gap::points::Shown;
+use super::{Occasion, RotorCause};
+use model_gap::points::{CauseParameter, Shown};
 use rotor_study::case::{CompressibilityChoice, DynamicStallChoice, FreeWakeValues, InflowChoice};
 
 /// A cause that is there or not; between, a part of it.
-fn share() -> RotorParameter {
-    RotorParameter {
+fn share() -> CauseParameter {
+    CauseParameter {
         name: "share",
         unit: "1",
         none: 0.0,
@@ -20,8 +20,8 @@ pub(super) fn flap_effectiveness(o: &Occasion<'_>) -> RotorCause {
     let physics = "the flaps make less or more than thin-aerofoil theory says: lift and moment each times a ratio";
     let wide = (0.1, 1.8);
     let parameters = vec![
-        RotorParameter { name: "lift", ..RotorParameter::ratio(&[0.95], wide) },
-        RotorParameter { name: "moment", ..RotorParameter::ratio(&[0.95], wide) },
+        CauseParameter { name: "lift", ..CauseParameter::ratio(&[0.95], wide) },
+        CauseParameter { name: "moment", ..CauseParameter::ratio(&[0.95], wide) },
     ];
     RotorCause::new("flap-effectiveness", physics, parameters, |m, v| {
         for flap in &mut m.case.flaps {
@@ -37,7 +37,7 @@ pub(super) fn flap_effectiveness(o: &Occasion<'_>) -> RotorCause {
 pub(super) fn aerodynamic_centre(o: &Occasion<'_>) -> RotorCause {
     let physics = "the aerodynamic centre lies elsewhere: ahead of the elastic axis by an offset";
     let chord = o.model.case.rotor.chord_r;
-    let parameters = vec![RotorParameter::both_ways("offset_r", "R", &[0.02 * chord], 0.2 * chord)];
+    let parameters = vec![CauseParameter::both_ways("offset_r", "R", &[0.02 * chord], 0.2 * chord)];
     RotorCause::new("aerodynamic-centre", physics, parameters, |m, v| {
         m.case.rotor.aerodynamic_centre_r += v[0];
     })
@@ -46,7 +46,7 @@ pub(super) fn aerodynamic_centre(o: &Occasion<'_>) -> RotorCause {
 
 pub(super) fn twist() -> RotorCause {
     let physics = "the blades are twisted more or less from root to tip";
-    let parameters = vec![RotorParameter::both_ways("deg", "deg", &[0.5], 8.0)];
+    let parameters = vec![CauseParameter::both_ways("deg", "deg", &[0.5], 8.0)];
     RotorCause::new("twist", physics, parameters, |m, v| {
         m.case.rotor.twist_deg += v[0];
         // zero at 0.75 R, as the uniform twist
@@ -58,7 +58,7 @@ pub(super) fn twist() -> RotorCause {
 
 pub(super) fn lift_slope() -> RotorCause {
     let physics = "the sections lift more or less for their incidence: lift slope times a ratio";
-    let parameters = vec![RotorParameter::ratio(&[0.97], (0.6, 1.5))];
+    let parameters = vec![CauseParameter::ratio(&[0.97], (0.6, 1.5))];
     RotorCause::new("lift-slope", physics, parameters, |m, v| m.lift_slope *= v[0]).beside(
         &["air-density", "mass"],
         &["the density measured by itself", "the collective at zero thrust"],
@@ -67,7 +67,7 @@ pub(super) fn lift_slope() -> RotorCause {
 
 pub(super) fn drag(o: &Occasion<'_>) -> RotorCause {
     let physics = "the sections have more or less profile drag: its coefficient times a ratio";
-    let parameters = vec![RotorParameter::ratio(&[1.1], (0.2, 4.0))];
+    let parameters = vec![CauseParameter::ratio(&[1.1], (0.2, 4.0))];
     let has_tables = o.model.case.aerodynamics.tables.is_some();
     RotorCause::new("drag", physics, parameters, |m, v| {
         m.case.aerodynamics.drag_coefficient *= v[0];

@@ -1,8 +1,8 @@
 //! What the blades may lack.
 
-use super::{Occasion, RotorCause, RotorParameter};
-use crate::model::RotorModel;
-use model_gap::points::Shown;
+use super::{Occasion, RotorCause};
+use crate::rotor::model::RotorModel;
+use model_gap::points::{CauseParameter, Shown};
 use rotor_fem::Joint;
 use rotor_study::case::{CouplingsChoice, DissimilarBlade, RotorValues, times};
 
@@ -20,7 +20,7 @@ fn stiffness(
     physics: &'static str,
     of: fn(&mut RotorValues) -> Property<'_>,
 ) -> RotorCause {
-    let parameters = vec![RotorParameter::ratio(&STEPS, STIFF)];
+    let parameters = vec![CauseParameter::ratio(&STEPS, STIFF)];
     RotorCause::new(id, physics, parameters, move |m, v| {
         let (uniform, table) = of(&mut m.case.rotor);
         times(uniform, table, v[0]);
@@ -57,7 +57,7 @@ pub(super) fn pitch_link(o: &Occasion<'_>) -> RotorCause {
     };
     // softer by a twentieth of what gj gives over the radius
     let give = 0.05 / (o.model.case.rotor.gj * unit_newton_metre);
-    let parameter = RotorParameter {
+    let parameter = CauseParameter {
         name: "stiffness",
         unit: "N m/rad",
         none,
@@ -82,7 +82,7 @@ pub(super) fn pitch_link(o: &Occasion<'_>) -> RotorCause {
 /// The stiffnesses are over the mass, and so is the Lock number.
 pub(super) fn mass() -> RotorCause {
     let physics = "the blades are heavier or lighter: mass per length times a ratio";
-    let parameters = vec![RotorParameter::ratio(&[1.03, 0.95, 1.1], (0.7, 1.4))];
+    let parameters = vec![CauseParameter::ratio(&[1.03, 0.95, 1.1], (0.7, 1.4))];
     RotorCause::new("mass", physics, parameters, |m, v| {
         let r = &mut m.case.rotor;
         let lighter = 1.0 / v[0];
@@ -96,7 +96,7 @@ pub(super) fn mass() -> RotorCause {
 
 pub(super) fn cg_offset(o: &Occasion<'_>) -> RotorCause {
     let physics = "the mass centre lies elsewhere: ahead of the elastic axis by an offset";
-    let parameters = vec![RotorParameter::both_ways("offset_r", "R", &[0.001], 0.01)];
+    let parameters = vec![CauseParameter::both_ways("offset_r", "R", &[0.001], 0.01)];
     let is_moderate = o.model.case.structure.couplings == CouplingsChoice::Moderate;
     RotorCause::new("cg-offset", physics, parameters, |m, v| m.case.rotor.mass_centre_r += v[0])
         .beside(
@@ -110,7 +110,7 @@ pub(super) fn structural_damping(o: &Occasion<'_>) -> RotorCause {
     let physics = "the blades damp more or less: a fraction of critical in every mode";
     let none = o.model.case.rotor.modal_damping;
     let amount = if none > 0.0 { 2.0 * none } else { 0.005 };
-    let parameter = RotorParameter {
+    let parameter = CauseParameter {
         name: "ratio",
         unit: "of critical",
         none,
@@ -136,10 +136,10 @@ pub(super) fn blade_dissimilarity(o: &Occasion<'_>) -> Vec<RotorCause> {
     let alike: &[&str] = &["azimuth-offset"];
     let told: &[&str] = &["gauges on every blade", "blades exchanged", "track"];
     let each = (1..=o.model.case.rotor.blades).flat_map(|blade| {
-        let label = RotorParameter::label("blade", blade as f64);
+        let label = CauseParameter::label("blade", blade as f64);
         let mass =
-            RotorParameter { name: "mass_ratio", ..RotorParameter::ratio(&[1.01], (0.8, 1.2)) };
-        let pitch = RotorParameter::both_ways("pitch_deg", "deg", &[0.1], 1.5);
+            CauseParameter { name: "mass_ratio", ..CauseParameter::ratio(&[1.01], (0.8, 1.2)) };
+        let pitch = CauseParameter::both_ways("pitch_deg", "deg", &[0.1], 1.5);
         let heavier = RotorCause::new(
             "blade-dissimilarity",
             "one blade is heavier or lighter than the others",

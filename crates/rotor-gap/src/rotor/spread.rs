@@ -16,12 +16,27 @@ pub const USUAL_UNCERTAIN: [(&str, f64); 6] = [
 
 /// Those that hold where a case says nothing.
 pub fn usual_uncertain() -> Vec<UncertainField> {
+    in_percent(&USUAL_UNCERTAIN)
+}
+
+/// Fields with their standard deviations in percent.
+pub(crate) fn in_percent(fields: &[(&str, f64)]) -> Vec<UncertainField> {
     let one = |(field, percent): &(&str, f64)| UncertainField {
         field: (*field).to_owned(),
         sd_percent: Some(*percent),
         sd: None,
     };
-    USUAL_UNCERTAIN.iter().map(one).collect()
+    fields.iter().map(one).collect()
+}
+
+/// Uncertain fields in words; `from` says where they are stated.
+pub fn stated(uncertain: &[UncertainField], from: &str) -> String {
+    let one = |own: &UncertainField| match (own.sd_percent, own.sd) {
+        (Some(percent), _) => format!("{} {percent} %", own.field),
+        (None, sd) => format!("{} {}", own.field, sd.unwrap_or_default()),
+    };
+    let all: Vec<String> = uncertain.iter().map(one).collect();
+    format!("uncertain (1 sd, {from}): {}", all.join(", "))
 }
 
 /// The case with an uncertain field moved by its standard deviation; `number` is its place among them.

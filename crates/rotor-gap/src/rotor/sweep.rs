@@ -1,7 +1,7 @@
 //! What a sweep measured.
 
-use crate::columns::{Column, PartOf, Reading, Setting};
 use crate::error::RotorGapError;
+use crate::rotor::columns::{Column, PartOf, Reading, Setting};
 use measured_data::{PointColumn, PointData, Scatter};
 use rotor_base::Harmonic;
 use rotor_study::case::{Case, TrimValues};

@@ -1,14 +1,14 @@
 //! What the drives of the flaps may lack.
 
-use super::{Occasion, RotorCause, RotorParameter};
-use crate::model::RotorModel;
-use model_gap::points::Shown;
+use super::{Occasion, RotorCause};
+use crate::rotor::model::RotorModel;
+use model_gap::points::{CauseParameter, Shown};
 
 const HYSTERESIS: &str = "the actuators have hysteresis that the simulation lacks: the flaps lag the voltage, by more at larger amplitude";
 
 fn of_actuators(
     o: &Occasion<'_>,
-    parameter: RotorParameter,
+    parameter: CauseParameter,
     apply: impl Fn(&mut RotorModel, f64) + Send + Sync + 'static,
 ) -> RotorCause {
     RotorCause::new("actuator-hysteresis", HYSTERESIS, vec![parameter], move |m, v| apply(m, v[0]))
@@ -25,7 +25,7 @@ fn of_actuators(
 pub(super) fn actuator_hysteresis(o: &Occasion<'_>) -> [RotorCause; 2] {
     let lag = |range, amounts, shown| {
         let (name, unit, none) = ("lag_deg", "deg", 0.0);
-        RotorParameter { name, unit, none, range, amounts, shown }
+        CauseParameter { name, unit, none, range, amounts, shown }
     };
     let part = lag((0.0, 2.0), vec![0.5, 1.0], Shown::Beside(o.lag_deg.to_vec()));
     let kept = lag((0.0, 80.0), vec![20.0, 45.0], Shown::Itself);
@@ -39,7 +39,7 @@ pub(super) fn actuator_hysteresis(o: &Occasion<'_>) -> [RotorCause; 2] {
 
 pub(super) fn actuator_gain(o: &Occasion<'_>) -> RotorCause {
     let physics = "the flaps move more or less than the drive says: motion times a ratio";
-    let parameters = vec![RotorParameter::ratio(&[0.95], (0.0, 2.5))];
+    let parameters = vec![CauseParameter::ratio(&[0.95], (0.0, 2.5))];
     RotorCause::new("actuator-gain", physics, parameters, |m, v| m.drive.gain *= v[0])
         .beside(&["flap-effectiveness"], &["the motion of the flaps measured"])
         .exact_to(0.02)

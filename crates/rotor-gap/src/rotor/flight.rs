@@ -1,9 +1,9 @@
 //! A rotor at a point of test: trimmed, its flaps driven, its channels read.
 
-use crate::columns::{Load, PartOf, Reading};
 use crate::error::RotorGapError;
-use crate::model::{RotorModel, later};
-use crate::sweep::{Sweep, SweepChannel, SweepPoint};
+use crate::rotor::columns::{Load, PartOf, Reading};
+use crate::rotor::model::{RotorModel, later};
+use crate::rotor::sweep::{Sweep, SweepChannel, SweepPoint};
 use model_gap::points::{Channel, Grid, channels_of};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
@@ -356,15 +356,4 @@ pub fn predict(
         own.read(model, &sweep.channels, &named, &instruments).map_err(at(&point.id))
     };
     sweep.points.iter().zip(flown).map(read).collect()
-}
-
-/// The readings of a model at every point, from what was flown.
-pub(crate) fn grid_of(
-    flown: &[Flown],
-    model: &RotorModel,
-    channels: &[SweepChannel],
-    named: &[Channel],
-    instruments: &[String],
-) -> Result<Grid, StudyError> {
-    flown.iter().map(|own| own.read(model, channels, named, instruments)).collect()
 }

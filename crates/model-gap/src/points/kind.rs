@@ -1,0 +1,213 @@
+//! A kind of simulation, asked what it lacks: its effects are computed, and computed anew where they were found.
+
+use super::cause::PointCause;
+use super::finding::PointFinding;
+use super::table::{Channel, Grid, Instrument, Point, PointTable, Suspect, SuspectParameter};
+use crate::discovery::Found;
+use crate::{Effect, GapError, places};
+
+/// Rounds in which the effects of what is left are computed anew where they were found.
+const ROUNDS: usize = 3;
+/// Part of a value by which it must be off those that its effect was computed at.
+const MOVED: f64 = 0.1;
+/// Part of the most that any cause explains alone from which on its effect is computed anew, and the most of these.
+const GOOD_PART: f64 = 0.15;
+const SURVIVORS: usize = 8;
+
+/// A kind of simulation: what is read of a model at every point.
+pub trait PointKind: Sync {
+    /// What a cause changes.
+    type Model: Clone + Send + Sync;
+    /// Why a model cannot be read.
+    type Error: std::error::Error + From<GapError>;
+
+    /// What a model reads at every point, in the units of the channels.
+    ///
+    /// # Errors
+    /// A model that cannot be simulated at a point.
+    fn read(&self, model: &Self::Model) -> Result<Grid, Self::Error>;
+}
+
+/// What is asked of a simulation and what was measured.
+pub struct KindQuestion<'a, K: PointKind> {
+    /// Its kind.
+    pub kind: &'a K,
+    /// The simulation.
+    pub model: &'a K::Model,
+    /// What it may lack.
+    pub causes: &'a [PointCause<K::Model>],
+    /// Other models that are thought as good, with their names. One that cannot be read is left out.
+    pub alternatives: Vec<(&'static str, K::Model)>,
+    /// The model with one input moved by its standard deviation, one for each such input.
+    pub uncertain: Vec<K::Model>,
+    /// The channels.
+    pub channels: Vec<Channel>,
+    /// What they are calibrated by.
+    pub instruments: Vec<Instrument>,
+    /// Names of the conditions.
+    pub conditions: Vec<String>,
+    /// The points, from what is predicted for them.
+    pub points: &'a dyn Fn(&Grid) -> Vec<Point>,
+    /// Whether the standard deviations were measured or stated.
+    pub knows_deviations: bool,
+    /// Causes to fit, nothing refused; all are looked for where there is none.
+    pub only: &'a [String],
+    /// Hears what is begun, and the percent of the work done by then.
+    pub begun: &'a (dyn Fn(usize, &str) + Sync),
+}
+
+/// What was found of a simulation.
+#[derive(Debug, Clone)]
+pub struct KindFinding<M> {
+    /// The points with what the simulation says of them.
+    pub table: PointTable,
+    /// What was found there.
+    pub found: PointFinding,
+    /// Names of the other models.
+    pub alternatives: Vec<&'static str>,
+    /// The model with what was found; as it was where nothing was.
+    pub extended: M,
+}
+
+impl<K: PointKind> KindQuestion<'_, K> {
+    /// Finds what the simulation lacks, or says that nothing is, or that it has no name.
+    ///
+    /// # Errors
+    /// The simulation itself or with an uncertain input moved cannot be read; the engine.
+    pub fn answer(&self) -> Result<KindFinding<K::Model>, K::Error> {
+        let (mut table, alternatives) = self.table()?;
+        (self.begun)(90, "search for what is missing");
+        let ids: Vec<&str> = self.causes.iter().map(|own| own.id).collect();
+        let only = places(&ids, self.only)?;
+        let find = |table: &PointTable| match &only[..] {
+            [] => table.find(),
+            given => table.refit(given),
+        };
+        let mut found = find(&table)?;
+        for _ in 0..ROUNDS {
+            if !self.refine(&mut table, &found) {
+                break;
+            }
+            found = find(&table)?;
+        }
+        let mut extended = self.model.clone();
+        for effect in &found.finding.effects {
+            extended = self.causes[effect.candidate].applied(&extended, &effect.values);
+        }
+        Ok(KindFinding { table, found, alternatives, extended })
+    }
+
+    /// The points with what the simulation says of them, with some of each cause, and with what it is not sure of.
+    fn table(&self) -> Result<(PointTable, Vec<&'static str>), K::Error> {
+        let begun = self.begun;
+        begun(0, "the simulation at every point");
+        let predicted = self.kind.read(self.model)?;
+        begun(5, "other levels of fidelity");
+        let (mut names, mut alternatives) = (Vec::new(), Vec::new());
+        for (name, model) in &self.alternatives {
+            // a level that cannot be read here tells nothing
+            if let Ok(grid) = self.kind.read(model) {
+                names.push(*name);
+                alternatives.push(grid);
+            }
+        }
+        begun(15, "inputs that are not known well");
+        let uncertain = self.uncertain.iter().map(|model| self.kind.read(model));
+        let uncertain = uncertain.collect::<Result<_, _>>()?;
+        let mut suspects = Vec::with_capacity(self.causes.len());
+        for (k, cause) in self.causes.iter().enumerate() {
+            begun(25 + 65 * k / self.causes.len(), cause.id);
+            suspects.push(self.suspect(cause));
+        }
+        let table = PointTable {
+            points: (self.points)(&predicted),
+            channels: self.channels.clone(),
+            instruments: self.instruments.clone(),
+            conditions: self.conditions.clone(),
+            predicted,
+            suspects,
+            alternatives,
+            uncertain,
+            knows_deviations: self.knows_deviations,
+        };
+        Ok((table, names))
+    }
+
+    /// A cause as a suspect: what is read with some of it. One that cannot be read is blocked.
+    fn suspect(&self, cause: &PointCause<K::Model>) -> Suspect {
+        let mut blocked = cause.blocked.clone();
+        let none = cause.none();
+        let mut parameter = |k: usize| {
+            let own = &cause.parameters[k];
+            let mut tables = Vec::new();
+            for &amount in &own.amounts {
+                if blocked.is_some() {
+                    break;
+                }
+                let mut values = none.clone();
+                values[k] = amount;
+                match self.kind.read(&cause.applied(self.model, &values)) {
+                    Ok(grid) => tables.push((amount, grid)),
+                    Err(error) => {
+                        blocked = Some(format!("the model with it cannot be read: {error}"));
+                    }
+                }
+            }
+            SuspectParameter {
+                name: own.name,
+                unit: own.unit,
+                none: own.none,
+                range: own.range,
+                tables,
+                shown: own.shown.clone(),
+            }
+        };
+        let parameters = (0..cause.parameters.len()).map(&mut parameter).collect();
+        Suspect {
+            name: cause.id,
+            physics: cause.physics,
+            form_error: cause.form_error,
+            confused_with: cause.confused_with,
+            separating: cause.separating,
+            parameters,
+            blocked,
+            ..Suspect::default()
+        }
+    }
+
+    /// Computes effects anew where they were found: of the causes found, of what may be it instead, and of those that fitted
+    /// alone explain a good part. False where none of them has moved.
+    fn refine(&self, table: &mut PointTable, found: &PointFinding) -> bool {
+        let finding = &found.finding;
+        let rivals = finding.causes.iter().flat_map(|own: &Found| &own.rivals);
+        let mut effects: Vec<&Effect> = rivals.flat_map(|rival| &rival.effects).collect();
+        let mut singles: Vec<&(Effect, f64)> = finding.singles.iter().flatten().collect();
+        singles.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let most = singles.first().map_or(0.0, |own| own.1);
+        let is_good = |own: &&&(Effect, f64)| own.1 > GOOD_PART * most;
+        effects.extend(singles.iter().filter(is_good).take(SURVIVORS).map(|own| &own.0));
+        let mut moved = false;
+        for effect in effects {
+            let cause = &self.causes[effect.candidate];
+            for (k, &value) in effect.values.iter().enumerate() {
+                let own = &mut table.suspects[effect.candidate].parameters[k];
+                let Some(size) = own.tables.first().map(|table| (table.0 - own.none).abs()) else {
+                    continue;
+                };
+                let known = own.tables.iter().map(|table| table.0).chain([own.none]);
+                let nearest = known.map(|at| (value - at).abs()).fold(f64::INFINITY, f64::min);
+                if nearest <= MOVED * size.max((value - own.none).abs()) {
+                    continue;
+                }
+                let mut values = cause.none();
+                values[k] = value;
+                // where it cannot be read its effect stays as it was
+                if let Ok(grid) = self.kind.read(&cause.applied(self.model, &values)) {
+                    own.tables.push((value, grid));
+                    moved = true;
+                }
+            }
+        }
+        moved
+    }
+}

@@ -1,0 +1,147 @@
+//! What the simulation of a section may lack.
+
+use super::SectionModel;
+use flap_aero::StallAirfoil;
+use model_gap::points::{CauseParameter, PointCause, Shown};
+
+/// A cause, ready for one section.
+pub type SectionCause = PointCause<SectionModel>;
+
+/// Names of the causes of a section.
+pub const SECTION_LIBRARY: [&str; 6] = [
+    "flap-effectiveness",
+    "compressibility",
+    "unsteady-lag",
+    "timing",
+    "sensor-gain",
+    "dynamic-stall",
+];
+
+/// What the library is made for.
+pub(super) struct Occasion<'a> {
+    pub(super) model: &'a SectionModel,
+    /// Whether a flap moves.
+    pub(super) has_flap: bool,
+    /// Whether every frequency was stated.
+    pub(super) has_frequency: bool,
+    /// Largest incidence of a motion with an amplitude, deg.
+    pub(super) highest_deg: f64,
+    /// Names of the instruments.
+    pub(super) instruments: &'a [String],
+}
+
+/// Incidence below which no section is near stall, deg.
+const NEAR_STALL_DEG: f64 = 6.0;
+
+fn share(amounts: &[f64]) -> CauseParameter {
+    CauseParameter {
+        name: "share",
+        unit: "1",
+        none: 0.0,
+        range: (0.0, 2.0),
+        amounts: amounts.to_vec(),
+        shown: Shown::Itself,
+    }
+}
+
+/// The causes of a section.
+pub(super) fn library(o: &Occasion<'_>) -> Vec<SectionCause> {
+    let mut all = vec![flap_effectiveness(o), compressibility(o), unsteady_lag(o), timing(o)];
+    all.extend(o.instruments.iter().map(|name| sensor_gain(name)));
+    all.push(dynamic_stall(o));
+    all
+}
+
+fn flap_effectiveness(o: &Occasion<'_>) -> SectionCause {
+    let physics = "the flap makes less or more than thin-aerofoil theory says: lift, moment and hinge moment each times a ratio";
+    let ratio = |name| CauseParameter::ratio(&[0.95, 0.7], (0.0, 2.0)).named(name);
+    let mut parameters = vec![ratio("lift"), ratio("moment")];
+    if o.model.has_hinge {
+        parameters.push(ratio("hinge"));
+    }
+    PointCause::new("flap-effectiveness", physics, parameters, |m: &mut SectionModel, v| {
+        for (own, value) in m.effectiveness.iter_mut().zip(v) {
+            *own *= value;
+        }
+    })
+    .beside(
+        &["sensor-gain"],
+        &["the moment beside the lift", "pitch of the section on the same sensors"],
+    )
+    .blocked_if(!o.has_flap, "no flap moves")
+}
+
+fn compressibility(o: &Occasion<'_>) -> SectionCause {
+    let physics = "the air is compressible: the Mach number of the sections times a share";
+    PointCause::new(
+        "compressibility",
+        physics,
+        vec![share(&[0.3, 1.0])],
+        |m: &mut SectionModel, v| {
+            m.mach_share += v[0];
+        },
+    )
+    .beside(&["sensor-gain"], &["points at other Mach numbers"])
+    .blocked_if(o.model.mach_share > 0.0, "the sections of the case are compressible already")
+}
+
+fn unsteady_lag(o: &Occasion<'_>) -> SectionCause {
+    let physics =
+        "the loads lag the motion more or less: the unsteady part of the response times a ratio";
+    let none = o.model.lag_share;
+    let parameter = CauseParameter {
+        name: "ratio",
+        unit: "1",
+        none,
+        range: (-0.5, 4.0),
+        amounts: vec![none + 0.2, none - 0.2, none + 1.0],
+        shown: Shown::Itself,
+    };
+    PointCause::new("unsteady-lag", physics, vec![parameter], move |m: &mut SectionModel, v| {
+        m.lag_share += v[0] - none;
+    })
+    .beside(&["timing"], &["points at other reduced frequencies"])
+}
+
+fn timing(o: &Occasion<'_>) -> SectionCause {
+    let physics = "the loads were sampled late against the motion, all by the same time";
+    let delay = CauseParameter::both_ways("s", "s", &[0.0005, 0.002], 0.05);
+    PointCause::new("timing", physics, vec![delay], |m: &mut SectionModel, v| m.delay_s += v[0])
+        .beside(&["unsteady-lag"], &["points at other frequencies", "a static load"])
+        .exact_to(0.005)
+        .blocked_if(!o.has_frequency, "no `frequency_hz` was stated: a time is no phase")
+}
+
+fn sensor_gain(instrument: &str) -> SectionCause {
+    let physics = model_gap::points::lasting(&format!(
+        "the instrument {instrument} reads all of its channels times a ratio"
+    ));
+    let name = instrument.to_owned();
+    let ratio = CauseParameter::ratio(&[0.95], (-3.0, 3.0));
+    PointCause::new("sensor-gain", physics, vec![ratio], move |m: &mut SectionModel, v| {
+        m.gains.entry(name.clone()).and_modify(|own| *own *= v[0]).or_insert(v[0]);
+    })
+    .beside(&["flap-effectiveness"], &["a static load on the same sensors"])
+    .exact_to(0.005)
+}
+
+fn dynamic_stall(o: &Occasion<'_>) -> SectionCause {
+    let physics = "the flow separates and a vortex leaves the leading edge: a share of what dynamic stall changes";
+    PointCause::new(
+        "dynamic-stall",
+        physics,
+        vec![share(&[0.2, 1.0])],
+        |m: &mut SectionModel, v| {
+            m.stall_share += v[0];
+        },
+    )
+    .beside(&["unsteady-lag"], &["a smaller mean incidence", "a smaller amplitude"])
+    .blocked_if(
+        o.highest_deg < NEAR_STALL_DEG,
+        "no motion with an amplitude comes to 6 deg of incidence",
+    )
+    .blocked_if(o.model.stall.is_some(), "the sections of the case stall already")
+}
+
+/// Constants of the stall that an attached section may lack.
+pub(super) const STALL: StallAirfoil = StallAirfoil::Naca0012Measured;

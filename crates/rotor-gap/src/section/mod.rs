@@ -1,0 +1,249 @@
+//! Loads of an oscillating section: harmonics or loops.
+//!
+//! | idea | module |
+//! |---|---|
+//! | what was measured | `loops` |
+//! | the cause library: what the simulation of a section may lack | `causes` |
+//! | a diagnosis | here |
+
+mod causes;
+mod loops;
+
+pub use causes::{SECTION_LIBRARY, SectionCause};
+pub use loops::{LOADS, LoadPart, SectionLoads, SectionMotion};
+
+use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
+use crate::error::RotorGapError;
+use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Motion, StallAirfoil};
+use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
+use rayon::prelude::*;
+use rotor_base::HarmonicSeries;
+use rotor_study::case::{Case, CompressibilityChoice, EffectivenessValues};
+use section_study::{LoopQuestion, SectionChoice, loop_history, section_response};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// Rows of a cycle of a loop.
+const POINTS: usize = 72;
+/// Harmonics that a cycle is resolved in.
+const RESOLVED: usize = 12;
+/// Calibration of pressures from one session to the next, standard deviation of the gain.
+const GAIN: f64 = 0.01;
+/// What reads the loads: they are integrals of the same pressures, so that one gain is that of all.
+const PRESSURES: &str = "pressures";
+
+/// A section as simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SectionModel {
+    /// Section model.
+    pub attached: AttachedFlowModel,
+    /// Flap chord over chord.
+    pub flap_chord: f64,
+    /// Whether the hinge moment is read.
+    pub has_hinge: bool,
+    /// Lift, moment and hinge moment of the flap over thin-aerofoil theory.
+    pub effectiveness: [f64; 3],
+    /// Mach number of the sections over that of the flow: 0 of incompressible ones.
+    pub mach_share: f64,
+    /// Unsteady part of the response, 1 as the model has it, 0 of a quasi-steady one.
+    pub lag_share: f64,
+    /// How the section stalls; none of attached flow.
+    pub stall: Option<StallAirfoil>,
+    /// Part of what dynamic stall changes that an attached section has.
+    pub stall_share: f64,
+    /// Delay of the loads against the motion, s.
+    pub delay_s: f64,
+    /// Gains of instruments that are off, by their names.
+    pub gains: BTreeMap<String, f64>,
+}
+
+impl SectionModel {
+    /// The section of a case: its model, its first flap, whether it is compressible and stalls.
+    pub fn of(case: &Case, has_hinge: bool) -> Self {
+        let flap = case.flaps.first();
+        let factors = flap.map_or_else(EffectivenessValues::default, |own| own.effectiveness);
+        let is_compressible = case.aerodynamics.compressibility == CompressibilityChoice::LocalMach
+            && case.aerodynamics.model != AttachedFlowModel::Incompressible;
+        Self {
+            attached: case.aerodynamics.model,
+            flap_chord: flap.map_or(0.0, |own| own.chord_fraction),
+            has_hinge,
+            effectiveness: [factors.lift, factors.moment, factors.hinge],
+            mach_share: f64::from(u8::from(is_compressible)),
+            lag_share: f64::from(u8::from(
+                case.aerodynamics.model != AttachedFlowModel::QuasiSteady,
+            )),
+            stall: case.aerodynamics.dynamic_stall.airfoil(),
+            stall_share: 0.0,
+            delay_s: 0.0,
+            gains: BTreeMap::new(),
+        }
+    }
+
+    fn choice(&self, model: AttachedFlowModel, mach: f64) -> Result<SectionChoice, AeroError> {
+        let [lift, moment, hinge] = self.effectiveness;
+        let effectiveness = FlapEffectiveness::new(lift, moment, hinge)?;
+        let mach = mach * self.mach_share;
+        Ok(SectionChoice { model, mach, flap_chord: self.flap_chord, effectiveness })
+    }
+
+    /// Loads of a motion, each over the phase of the motion and over its amplitude, but for the mean.
+    fn loads(&self, motion: &SectionMotion) -> Result<[HarmonicSeries; 3], AeroError> {
+        let quasi_steady = AttachedFlowModel::QuasiSteady;
+        let unsteady = match self.attached {
+            AttachedFlowModel::QuasiSteady => AttachedFlowModel::Calibrated,
+            other => other,
+        };
+        let own = |model, stall| cycle(&self.choice(model, motion.mach)?, motion, stall);
+        let mut terms = Vec::new();
+        if self.lag_share != 0.0 {
+            terms.push((self.lag_share, own(unsteady, self.stall)?));
+        }
+        let at_once = 1.0 - self.lag_share;
+        if at_once != 0.0 {
+            terms.push((at_once, own(quasi_steady, self.stall)?));
+        }
+        if self.stall_share != 0.0 && self.stall.is_none() {
+            terms.push((self.stall_share, own(self.attached, Some(causes::STALL))?));
+            terms.push((-self.stall_share, own(self.attached, None)?));
+        }
+        Ok(std::array::from_fn(|load| sum(&terms, load)))
+    }
+}
+
+/// The sum of loads, each with a factor.
+fn sum(terms: &[(f64, [HarmonicSeries; 3])], load: usize) -> HarmonicSeries {
+    let mut all = HarmonicSeries::zero(RESOLVED);
+    for (factor, loads) in terms {
+        all.mean += factor * loads[load].mean;
+        for n in 1..=RESOLVED {
+            let (mut own, one) = (all.harmonic(n), loads[load].harmonic(n));
+            own.cosine += factor * one.cosine;
+            own.sine += factor * one.sine;
+            all.set_harmonic(n, own);
+        }
+    }
+    all
+}
+
+/// Loads of one cycle, over the amplitude but for the mean.
+fn cycle(
+    section: &SectionChoice,
+    motion: &SectionMotion,
+    stall: Option<StallAirfoil>,
+) -> Result<[HarmonicSeries; 3], AeroError> {
+    let k = motion.reduced_frequency;
+    let Some(amplitude_rad) = motion.amplitude_rad else {
+        let found = section_response(section, motion.motion, k)?;
+        let series = |[re, im]: [f64; 2]| {
+            let mut own = HarmonicSeries::zero(1);
+            own.set_harmonic(1, rotor_base::Harmonic { cosine: im, sine: re });
+            own
+        };
+        return Ok([found.cn, found.cm, found.ch].map(series));
+    };
+    let table = loop_history(&LoopQuestion {
+        section: *section,
+        motion: motion.motion,
+        mean_rad: motion.mean_rad,
+        amplitude_rad,
+        reduced_frequency: k,
+        points: POINTS,
+        stall,
+    })?;
+    // rows are at 5, 10, ... 360 deg: the last is the first of a cycle
+    let last = table.rows.len() - 1;
+    let rows: Vec<&Vec<f64>> =
+        std::iter::once(last).chain(0..last).map(|k| &table.rows[k]).collect();
+    Ok(std::array::from_fn(|load| {
+        let values: Vec<f64> = rows.iter().map(|row| row[3 + load]).collect();
+        let series = HarmonicSeries::from_uniform_samples(&values, RESOLVED).unwrap_or_default();
+        HarmonicSeries { mean: series.mean, ..rotor_study::scaled(&series, 1.0 / amplitude_rad) }
+    }))
+}
+
+/// The motions that were measured, of any section.
+struct Motions<'a> {
+    measured: &'a SectionLoads,
+    instruments: Vec<String>,
+}
+
+impl PointKind for Motions<'_> {
+    type Model = SectionModel;
+    type Error = RotorGapError;
+
+    fn read(&self, model: &SectionModel) -> Result<Grid, RotorGapError> {
+        let gain = self.instruments.iter().map(|own| model.gains.get(own).copied().unwrap_or(1.0));
+        let gain: f64 = gain.product();
+        let of = |motion: &SectionMotion| {
+            let failed = |source| RotorGapError::Section { point: motion.id.clone(), source };
+            let loads = model.loads(motion).map_err(failed)?;
+            let late_rad = motion.frequency_hz.map_or(0.0, |hz| TAU * hz * model.delay_s);
+            let loads = loads.map(|own| own.shifted(-late_rad));
+            let part = |own: &LoadPart| {
+                let series = &loads[own.load];
+                let value = match (own.harmonic, own.is_imaginary) {
+                    (0, _) => series.mean,
+                    (n, false) => series.harmonic(n).sine,
+                    (n, true) => series.harmonic(n).cosine,
+                };
+                gain * value
+            };
+            Ok(self.measured.parts.iter().map(part).collect())
+        };
+        self.measured.motions.par_iter().map(of).collect()
+    }
+}
+
+/// Diagnoses the loads of an oscillating section.
+///
+/// # Errors
+/// [`RotorGapError`]: a motion outside the section model, the engine.
+pub fn diagnose_section(
+    question: &CaseQuestion<'_>,
+    measured: &SectionLoads,
+) -> Result<CaseDiagnosis, RotorGapError> {
+    let has_hinge = measured.parts.iter().any(|own| own.load == 2);
+    let model = SectionModel::of(question.case, has_hinge);
+    let instruments = vec![PRESSURES.to_owned()];
+    let kind = Motions { measured, instruments: instruments.clone() };
+    let names: Vec<&str> = measured.names.iter().map(String::as_str).collect();
+    let (mut channels, _) = channels_of(&names);
+    for own in &mut channels {
+        own.instrument = 0;
+    }
+    let causes = causes::library(&causes::Occasion {
+        model: &model,
+        has_flap: measured.motions.iter().any(|own| own.motion == Motion::Flap),
+        has_frequency: measured.motions.iter().all(|own| own.frequency_hz.is_some()),
+        highest_deg: measured.motions.iter().map(SectionMotion::highest_deg).fold(0.0, f64::max),
+        instruments: &instruments,
+    });
+    // the calibrated model is fitted to exact linear theory, which no other one here comes nearer to
+    let with = |attached| ("calibrated sections", SectionModel { attached, ..model.clone() });
+    let is_calibrated = model.attached == AttachedFlowModel::Calibrated;
+    let alternatives =
+        if is_calibrated { Vec::new() } else { vec![with(AttachedFlowModel::Calibrated)] };
+    let asked = KindQuestion {
+        kind: &kind,
+        model: &model,
+        causes: &causes,
+        alternatives,
+        uncertain: Vec::new(),
+        channels,
+        instruments: vec![Instrument { name: PRESSURES.to_owned(), gain: GAIN, zero: 0.0 }],
+        conditions: vec!["mach".to_owned(), "reduced_frequency".to_owned()],
+        points: &|predicted| measured.points(predicted),
+        knows_deviations: measured.knows_deviations(),
+        only: question.only,
+        begun: question.begun,
+    };
+    let KindFinding { table, found, alternatives, extended } = asked.answer()?;
+    let mut case = question.case.clone();
+    if let Some(flap) = case.flaps.first_mut() {
+        let [lift, moment, hinge] = extended.effectiveness;
+        flap.effectiveness = EffectivenessValues { lift, moment, hinge };
+    }
+    let extended = (case != *question.case).then_some(case);
+    Ok(CaseDiagnosis { table, found, alternatives, extended })
+}
