@@ -90,7 +90,9 @@ impl LeastSquaresProgram {
 
     /// Counts all targets added so far in a unit.
     pub(crate) fn count_targets_in(&mut self, unit: f64) {
-        self.right.iter_mut().for_each(|value| *value /= unit);
+        for value in &mut self.right {
+            *value /= unit;
+        }
     }
 
     /// Multiplies the weights of all rows added so far.

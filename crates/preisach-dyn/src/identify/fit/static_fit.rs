@@ -147,7 +147,9 @@ impl Unknowns {
         let penalty = unit * unit * smoothness / variance * (self.count - 1) as f64;
         smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), &mut program);
         let mut solution = program.solve("static map")?;
-        solution.iter_mut().for_each(|value| *value *= unit);
+        for value in &mut solution {
+            *value *= unit;
+        }
         Ok(self.map(grid, &solution))
     }
 
