@@ -71,7 +71,8 @@ pub(crate) struct OutputTrace {
     pub(crate) input: Vec<f64>,
 }
 
-/// Where the energy of a measured run goes under the base model, fractions that sum to 1.
+/// Where the energy of a measured run goes under the base model, fractions that sum to 1; of a run at rest, fractions
+/// of the energy of the reference runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunEnergy {
     /// The run.
@@ -325,7 +326,9 @@ fn kept_structures(
 impl RunEnergy {
     fn of(run: &Record, base: &BaseModel) -> Self {
         let residual = base.residual(run);
-        let total = variance(run.judged_output()).max(1e-300);
+        // a run at rest has no motion of its own
+        let spread = variance(run.judged_output());
+        let total = if run.is_at_rest() { base.spread.powi(2) } else { spread }.max(1e-300);
         let EnergySplit { explained, noise, structured } =
             EnergySplit::of_residual(&residual, total, white_noise(&residual).powi(2));
         Self { id: run.id.clone(), explained, noise, structured }

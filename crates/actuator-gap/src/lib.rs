@@ -13,6 +13,7 @@
 //! | a diagnosis, its findings and the data of its figures | `diagnosis`, `findings`, `figures` |
 //! | what to measure next | `next` |
 //! | the extended actuator, and what an actuator file holds | `extended`, `actuator_file` |
+//! | how an identified model fits its records | `judge` |
 //! | the models of the discovery ladder | `rungs` |
 
 mod actuator_file;
@@ -24,6 +25,7 @@ mod error;
 mod extended;
 mod figures;
 mod findings;
+mod judge;
 mod next;
 mod numbers;
 mod plan;
@@ -38,6 +40,7 @@ mod surrogate;
 pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 pub use diagnosis::{Diagnosis, RunEnergy, diagnose};
 pub use error::DiagnosisError;
+pub use judge::{NotJudged, judged};
 pub use next::Proposal;
 pub use plan::{Plan, Planned, PlannedCause, Rehearsal, SIZES, plan, usual_runs};
 pub use question::{Question, Stage, StructureStore};

@@ -79,6 +79,11 @@ impl Record {
         self.judged(&self.input)
     }
 
+    /// Whether the input never changes where it is judged.
+    pub(crate) fn is_at_rest(&self) -> bool {
+        self.judged_input().windows(2).all(|pair| (pair[1] - pair[0]).abs() <= 0.0)
+    }
+
     /// Takes a zero off the output.
     pub(crate) fn lower(&mut self, zero: f64) {
         self.output.iter_mut().for_each(|y| *y -= zero);

@@ -21,6 +21,14 @@ pub enum DataError {
         /// The file.
         path: PathBuf,
     },
+    /// A file is in the way that was not written by this program as what is to be written now.
+    #[error("{} exists already and is no file of kind {kind}; name another to write, or replace it with --force", .path.display())]
+    WouldOverwriteOther {
+        /// The file.
+        path: PathBuf,
+        /// The kind of file that would be replaced without asking.
+        kind: &'static str,
+    },
     /// A file cannot be written.
     #[error("{} cannot be written ({reason}); check the folder, its permissions and the space left", .path.display())]
     NotWritten {

@@ -16,6 +16,7 @@ mod harmonics;
 mod lanes;
 mod quadrature;
 mod record_use;
+mod rests;
 mod scales;
 mod stats;
 
@@ -25,8 +26,9 @@ pub use harmonics::{Harmonic, HarmonicSeries, harmonic_waves, uniform_azimuths_r
 pub use lanes::{LANES, Lanes, Number};
 pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatto_nodes};
 pub use record_use::RecordUse;
+pub use rests::rests;
 pub use scales::RotorScales;
-pub use stats::{mean_square, variance};
+pub use stats::{mean_square, significant, variance};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -120,11 +120,16 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
 /// Warnings of bench data, and that nothing says how far the flap turns.
 fn bench_warnings(data: &BenchData) -> Vec<String> {
     let mut warnings: Vec<String> = data.warnings.iter().map(Problem::to_string).collect();
-    if gain(data, &Settings::default()).1 == GainRule::Assumed {
-        let place = Place::file(format!("{}/{DATASET}", data.folder)).field("flap_deg_per_um");
-        let message = "is not given and no run is a slow loop to scale by: 1 deg/um will be assumed, expected the gain of the linkage; give it, or a full loop at 0.2 Hz".to_owned();
-        warnings.push(Problem::new(place, Fault::Other(message)).to_string());
-    }
+    let (gain, rule) = gain(data, &Settings::default());
+    let message = match rule {
+        GainRule::Assumed => "is not given and no run is a slow loop to scale by: 1 deg/um will be assumed, expected the gain of the linkage; give it, or a full loop at 0.2 Hz".to_owned(),
+        GainRule::WidestSlowLoop => format!(
+            "is not given: {gain:.4} deg/um will make the widest slow loop +-10 deg, whatever the linkage does; give its gain, or import with --deg-per-um or --arm-mm"
+        ),
+        GainRule::DataSet => return warnings,
+    };
+    let place = Place::file(format!("{}/{DATASET}", data.folder)).field("flap_deg_per_um");
+    warnings.push(Problem::new(place, Fault::Other(message)).to_string());
     warnings
 }
 

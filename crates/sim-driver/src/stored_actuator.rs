@@ -13,9 +13,14 @@ pub fn actuator_warnings(stored: &StoredActuator, place: impl Fn(&str) -> Place)
     let unlikely = stored.doubts().into_iter().filter(|doubt| doubt.weight == Weight::Unlikely);
     let mut warnings: Vec<(String, String)> =
         unlikely.map(|doubt| (format!("model.{}", doubt.field), in_words(&doubt))).collect();
-    if stored.gain == Some(GainRule::Assumed) {
+    let how = match stored.gain {
+        Some(GainRule::Assumed) => Some("was assumed"),
+        Some(GainRule::WidestSlowLoop) => Some("makes the widest slow loop +-10 deg"),
+        _ => None,
+    };
+    if let Some(how) = how {
         let message = format!(
-            "{} deg/um was assumed, expected the gain of the linkage; flap angles, hinge moments and loads are off by its error: give flap_deg_per_um in dataset.ron and identify again",
+            "{} deg/um {how}, expected the gain of the linkage; flap angles, hinge moments and loads are off by its error: give flap_deg_per_um in dataset.ron and identify again",
             stored.model.calibration.deg_per_um
         );
         warnings.push(("model.calibration.deg_per_um".into(), message));

@@ -7,7 +7,7 @@ use super::run::Run;
 use crate::files::Folder;
 use crate::problem::{Fault, Problem, Problems};
 use crate::tables::{
-    Listing, Record, check_lag, check_record, check_unit, limits, parse_measured_csv,
+    Listing, Record, Spans, check_lag, check_record, check_unit, limits, parse_measured_csv,
 };
 
 /// A bench data set, checked.
@@ -69,6 +69,10 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
         check_bench_record(&record, range, &mut open.problems, &mut open.warnings);
         Ok(table)
     });
+    let spans = open.check_together(&runs, [("command_V", "V"), ("displacement_um", "um")]);
+    if let Some(fault) = monitor_volts(&spans) {
+        open.warnings.push(Problem::new(open.index.place("runs"), fault));
+    }
     let spans = runs.iter().map(|run| limits(&run.table.input)).map(|(low, high)| high - low);
     let used_volt = spans.fold(0.0, f64::max);
     if let Some(fault) = range.and_then(|range| range_unused(used_volt, range)) {
@@ -95,6 +99,21 @@ pub(crate) fn range_unused(used_volt: f64, (low, high): (f64, f64)) -> Option<Fa
     is_unused.then(|| {
         Fault::Other(format!(
             "no command uses more than {percent:.2} % of command_range_V ({low}, {high}): are the commands in kV, or in V over a divider?"
+        ))
+    })
+}
+
+/// Largest output of the monitor of an amplifier, V.
+const MONITOR_VOLT: f64 = 12.0;
+
+/// The fault of commands that all stay within what the monitor output of an amplifier gives.
+pub(crate) fn monitor_volts(all: &[Spans]) -> Option<Fault> {
+    let moving = all.iter().filter(|spans| spans.input.1 > spans.input.0);
+    let sizes = moving.map(|spans| spans.input.0.abs().max(spans.input.1.abs()));
+    let largest = sizes.fold(0.0, f64::max);
+    (largest > 0.0 && largest <= MONITOR_VOLT).then(|| {
+        Fault::Other(format!(
+            "no command exceeds {largest} V: if this is the monitor output of an amplifier or its input, multiply by its gain: hhc import --scale command=15 for 0 to 10 V of 0 to 150 V"
         ))
     })
 }

@@ -55,6 +55,11 @@ pub fn read_loops(folder: &Folder) -> Result<LoopData, Problems> {
         }
         Ok(table)
     });
+    if let Some(channels) = &channels {
+        let labels = channels.both().map(Channel::label);
+        let units = channels.both().map(|channel| channel.unit.symbol);
+        open.check_together(&runs, [(&labels[0], units[0]), (&labels[1], units[1])]);
+    }
     let ends = runs.iter().map(|run| limits(&run.table.input));
     let ends: Vec<f64> = ends.flat_map(|(low, high)| [low, high]).collect();
     let of_all = (limits(&ends), "from the smallest to the largest input of all runs");

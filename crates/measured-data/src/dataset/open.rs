@@ -4,7 +4,9 @@ use super::file::{DatasetFile, DatasetKind};
 use super::run::{Run, meant_by_id, samples_within};
 use crate::files::{Folder, RonIndex, Source, read_ron};
 use crate::problem::{Fault, Place, Problem, Problems};
-use crate::tables::{Channel, Declared, MeasuredTable, unknown_unit};
+use crate::tables::{
+    Channel, Declared, MeasuredTable, Record, Spans, check_rests, several_runs, unknown_unit,
+};
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
@@ -104,6 +106,30 @@ impl<'a> OpenDataset<'a> {
             }
         }
         runs
+    }
+
+    /// Judges runs beside one another, each inside its window: which rest, which hold several runs. `columns` are
+    /// input and output with their units.
+    pub(crate) fn check_together(
+        &mut self,
+        runs: &[Run],
+        [input, output]: [(&str, &'static str); 2],
+    ) -> Vec<Spans> {
+        let mut spans = Vec::with_capacity(runs.len());
+        for run in runs {
+            let (table, window) = (&run.table, run.window());
+            let name = self.folder.display(&run.entry.file);
+            let record = Record {
+                file: &name,
+                lines: table.lines.get(window.clone()).unwrap_or_default(),
+                input: (input.0, input.1, table.input.get(window.clone()).unwrap_or_default()),
+                output: (output.0, output.1, table.output.get(window).unwrap_or_default()),
+            };
+            spans.push(Spans::of(&record));
+            self.warnings.extend(several_runs(&record));
+        }
+        check_rests(&spans, &mut self.problems, &mut self.warnings);
+        spans
     }
 
     /// Reads a file of a run; `path` is its field in `dataset.ron`.

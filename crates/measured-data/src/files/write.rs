@@ -1,5 +1,6 @@
 //! Atomic writing: a file appears whole or not at all.
 
+use super::{RonIndex, Source};
 use crate::error::DataError;
 use std::io::{Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -77,6 +78,26 @@ pub fn refuse_input(input: &Path, output: &Path) -> Result<(), DataError> {
         return Err(DataError::WouldOverwriteInput { path: output.to_path_buf() });
     }
     Ok(())
+}
+
+/// Refuses to replace a file that is not of a kind, the value of its field `kind`. Empty files and what is no regular
+/// file are let pass.
+///
+/// # Errors
+/// [`DataError::WouldOverwriteOther`].
+pub fn refuse_other_kind(path: &Path, kind: &'static str) -> Result<(), DataError> {
+    let is_empty = path.metadata().is_ok_and(|found| found.len() == 0);
+    if !path.is_file() || is_empty {
+        return Ok(());
+    }
+    // what cannot be read as text is of no kind
+    let source = Source::read(path).ok();
+    let found = source.map(|source| RonIndex::new(&source.name, &source.text));
+    let is_kind = found.and_then(|index| Some(index.value_text("kind")?.trim() == kind));
+    match is_kind {
+        Some(true) => Ok(()),
+        _ => Err(DataError::WouldOverwriteOther { path: path.to_path_buf(), kind }),
+    }
 }
 
 /// Whether two paths lead to the same file or folder.
@@ -203,6 +224,26 @@ mod tests {
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
         let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
         assert_eq!(left.len(), 1, "no temporary file stays behind");
+    }
+
+    #[test]
+    fn only_a_file_of_the_kind_is_replaced_unasked() {
+        let place = tempfile::tempdir().unwrap();
+        let refused = |name: &str, bytes: &[u8]| {
+            let path = place.path().join(name);
+            write_atomic(&path, bytes).unwrap();
+            refuse_other_kind(&path, "Actuator").is_err()
+        };
+        assert!(!refused(
+            "own.ron",
+            b"(\n    // a comment\n    kind: Actuator,\n    title: \"t\",\n)"
+        ));
+        assert!(!refused("empty", b""));
+        assert!(refused("case.ron", b"(title: \"kind: Actuator\", advance_ratio: 0.3)"));
+        assert!(refused("dataset.ron", b"(kind: ActuatorBench, title: \"t\", runs: [])"));
+        assert!(refused("data.csv", b"time_s,command_V\n0,1\n"));
+        assert!(refused("bytes", &[0xff, 0x00, 0x80]));
+        refuse_other_kind(&place.path().join("none"), "Actuator").unwrap();
     }
 
     #[cfg(unix)]

@@ -12,8 +12,12 @@ pub(super) struct Taken {
     pub(super) source: usize,
     /// Its name, and the unit it is written in.
     pub(super) channel: Channel,
-    /// Factor from the source's unit.
+    /// Factor from the source's number.
     pub(super) factor: f64,
+    /// What is added to it then, in the unit written.
+    pub(super) shift: f64,
+    /// Factor from the unit of the source's column.
+    from_unit: f64,
 }
 
 /// What the user says about the columns.
@@ -27,6 +31,10 @@ pub struct ColumnOptions {
     pub response: Option<String>,
     /// `--convert`: names with the unit to convert into, separated by commas.
     pub convert: Option<String>,
+    /// `--scale`: `NAME=FACTOR` of what the recorder divided by, separated by commas.
+    pub scale: Option<String>,
+    /// `--offset`: `NAME=NUMBER` to add after the factor, in the unit of the column, separated by commas.
+    pub offset: Option<String>,
 }
 
 /// The columns of a source that are named, before they are chosen from, and those left out because
@@ -94,6 +102,8 @@ pub(super) struct Choice {
     pub(super) columns: Vec<Taken>,
     pub(super) kind: ImportKind,
     pub(super) left_out: Vec<String>,
+    /// What was done to the numbers, in words: `command x 15`.
+    pub(super) corrections: Vec<String>,
 }
 
 impl Choice {
@@ -114,7 +124,30 @@ impl Choice {
         &self,
         numbers: impl IntoIterator<Item = f64>,
     ) -> impl Iterator<Item = f64> {
-        self.taken().zip(numbers).map(|(taken, number)| taken.factor * number)
+        self.taken().zip(numbers).map(|(taken, number)| taken.factor * number + taken.shift)
+    }
+
+    /// Takes up `--scale` and `--offset`: factor, then offset, in the unit of the source's column.
+    fn correct(&mut self, options: &ColumnOptions) -> Result<(), Fault> {
+        for (option, text) in [("--scale", &options.scale), ("--offset", &options.offset)] {
+            for (name, number) in named_numbers(option, text.as_deref())? {
+                let names = self.taken().map(|taken| taken.channel.name.clone());
+                let found = names.collect::<Vec<_>>().join(", ");
+                let named = |taken: &&mut Taken| taken.channel.name == name;
+                let Some(taken) = self.time.iter_mut().chain(&mut self.columns).find(named) else {
+                    let remedy = "name a column that is taken, without its unit";
+                    return Err(Fault::MissingColumn { wanted: name, found, remedy });
+                };
+                if option == "--scale" {
+                    taken.factor *= number;
+                    self.corrections.push(format!("{name} x {number}"));
+                } else {
+                    taken.shift += taken.from_unit * number;
+                    self.corrections.push(format!("{name} {number:+}"));
+                }
+            }
+        }
+        Ok(())
     }
 
     /// An empty record of these columns.
@@ -154,13 +187,45 @@ pub(super) fn choose(
     let is_loop = !bench || options.input.is_some() || options.response.is_some();
     let found = if is_loop { ImportKind::GenericLoop } else { ImportKind::ActuatorBench };
     let kind = wanted.unwrap_or(found);
+    if time.is_some() && sampling_hz.is_some() {
+        return Err(no_effect(
+            "--sampling-hz",
+            "the file has a time column",
+            "leave it out, or leave the time column out: --columns with - in its place",
+        ));
+    }
     let columns = match kind {
-        ImportKind::ActuatorBench => bench_columns(&data)?,
+        ImportKind::ActuatorBench => {
+            let given = [
+                (
+                    "--convert",
+                    &options.convert,
+                    "a bench is always brought to s, V and um; a factor is --scale command=15",
+                ),
+                (
+                    "--input",
+                    &options.input,
+                    "its input is the column `command`; name it with --columns",
+                ),
+                (
+                    "--response",
+                    &options.response,
+                    "its output is the column `displacement`; name it with --columns",
+                ),
+            ];
+            if let Some((option, _, remedy)) =
+                given.into_iter().find(|(_, given, _)| given.is_some())
+            {
+                return Err(no_effect(option, "this is an actuator bench", remedy));
+            }
+            bench_columns(&data)?
+        }
         _ => loop_columns(&data, options)?,
     };
     let is_taken = |source: usize| columns.iter().any(|taken| taken.source == source);
     left_out.extend(data.iter().filter(|(i, _)| !is_taken(*i)).map(|(_, c)| c.label()));
-    let choice = Choice { time, columns, kind, left_out };
+    let mut choice = Choice { time, columns, kind, left_out, corrections: Vec::new() };
+    choice.correct(options)?;
     for Taken { channel, .. } in choice.taken() {
         let name = &channel.name;
         let alike = |c: &Channel| if channel.is_time() { c.is_time() } else { c.name == *name };
@@ -204,7 +269,8 @@ fn converted(source: usize, channel: &Channel, unit: &str) -> Result<Taken, Faul
             from.symbol, unit.symbol
         ))
     })?;
-    Ok(Taken { source, channel: Channel { name: channel.name.clone(), unit }, factor })
+    let channel = Channel { name: channel.name.clone(), unit };
+    Ok(Taken { source, channel, factor, shift: 0.0, from_unit: factor })
 }
 
 /// Input and output of a generic loop, in their own units or those asked for.
@@ -243,6 +309,29 @@ fn loop_columns(data: &[(usize, Channel)], options: &ColumnOptions) -> Result<Ve
 fn wanted_units(options: &ColumnOptions) -> Result<Vec<Channel>, Fault> {
     let entries = options.convert.iter().flat_map(|text| text.split(','));
     entries.map(|entry| Channel::parse(entry).ok_or_else(|| unknown_unit(entry.trim()))).collect()
+}
+
+/// The names and numbers of `--scale` or `--offset`.
+fn named_numbers(option: &str, text: Option<&str>) -> Result<Vec<(String, f64)>, Fault> {
+    let entry = |entry: &str| {
+        let read = || {
+            let (name, number) = entry.split_once('=')?;
+            let number = number.trim().parse::<f64>().ok().filter(|v| v.is_finite())?;
+            let is_factor = option == "--scale" && number.abs() <= 0.0;
+            (!is_factor).then(|| (name.trim().to_owned(), number))
+        };
+        read().ok_or_else(|| {
+            Fault::Other(format!(
+                "the entry `{entry}` of {option} is not understood; write NAME=NUMBER with the name of a column without its unit and a finite number, such as command=15"
+            ))
+        })
+    };
+    text.into_iter().flat_map(|text| text.split(',')).map(entry).collect()
+}
+
+/// The fault of an option that would do nothing.
+pub(super) fn no_effect(option: &str, why: &str, remedy: &str) -> Fault {
+    Fault::Other(format!("{option} would have no effect: {why}; {remedy}"))
 }
 
 #[cfg(test)]
@@ -312,6 +401,39 @@ mod tests {
             chosen("time_s,displacement_in,force_kip", &si).unwrap(),
             "GenericLoop displacement_mm 25.4, force_kip 1"
         );
+        let monitor = ColumnOptions {
+            scale: Some("command=15, displacement=0.1".into()),
+            offset: Some("displacement=-30".into()),
+            ..none.clone()
+        };
+        let count = name_columns(&options("time_s,command_V,displacement_mm"), None, 3).unwrap();
+        let choice = choose(count, &monitor, None, None).unwrap();
+        let numbers: Vec<f64> = choice.converted([1.0, 2.0, 301.0]).collect();
+        assert_eq!(numbers[..2], [1.0, 30.0]);
+        assert!(
+            (numbers[2] - 100.0).abs() < 1e-9,
+            "factor, then offset, then the unit: {numbers:?}"
+        );
+        assert_eq!(
+            choice.corrections.join(", "),
+            "command x 15, displacement x 0.1, displacement -30"
+        );
+        for (scale, part) in [
+            ("command", "the entry `command` of --scale is not understood"),
+            ("command=0", "the entry `command=0`"),
+            ("voltage=15", "the column `voltage` is missing"),
+        ] {
+            let wrong = ColumnOptions { scale: Some(scale.into()), ..none.clone() };
+            let text = chosen("time_s,command_V,displacement_um", &wrong).unwrap_err().to_string();
+            assert!(text.contains(part), "{text}");
+        }
+        for (wrong, part) in [
+            (ColumnOptions { convert: Some("command_V=15".into()), ..none.clone() }, "--convert"),
+            (ColumnOptions { convert: Some("command_mV".into()), ..none.clone() }, "--convert"),
+        ] {
+            let text = chosen("time_s,command_V,displacement_um", &wrong).unwrap_err().to_string();
+            assert!(text.contains(part) && text.contains("would have no effect"), "{text}");
+        }
         let wrong = ColumnOptions { convert: Some("displacement_N".into()), ..none.clone() };
         let text = chosen("time_s,displacement_in,force_kip", &wrong).unwrap_err().to_string();
         assert!(text.contains("in cannot be converted into N"), "{text}");

@@ -56,8 +56,8 @@ pub(super) fn read_csv(
         Some(numbers) => gather.push(choice.converted(numbers.iter().copied()), line, problems),
         None => gather.leave_out(),
     })?;
-    let gathered = gather.finish(&mut problems);
-    problems.into_result(gathered.map(|gathered| Table { gathered, choice }))
+    let parts = gather.finish(&mut problems);
+    problems.into_result(parts.map(|parts| Table { parts, choice }))
 }
 
 #[cfg(test)]

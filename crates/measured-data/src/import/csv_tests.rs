@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use std::io::Read;
 
 const REDUCTION: Reduction =
-    Reduction { most_samples: 1024, reduce_to_hz: None, sampling_hz: None };
+    Reduction { most_samples: 1024, reduce_to_hz: None, sampling_hz: None, split: false };
 
 fn options(columns: &str) -> ColumnOptions {
     let columns = (!columns.is_empty()).then(|| columns.to_owned());
@@ -42,8 +42,8 @@ fn separators_headers_and_units() {
         options.input = Some("u".into());
         let table = read_csv(text.as_bytes(), "r.csv", &options, None, REDUCTION).unwrap();
         assert_eq!(table.choice.labels(), ["time_s", "u_V", "x_um"], "{text}");
-        assert_eq!(table.gathered.columns, rows[1..], "{text}");
-        for (found, expected) in table.gathered.time_s.iter().zip(rows[0]) {
+        assert_eq!(table.parts[0].columns, rows[1..], "{text}");
+        for (found, expected) in table.parts[0].time_s.iter().zip(rows[0]) {
             assert!((found - expected).abs() < 1e-15, "{text}");
         }
     }
@@ -59,7 +59,7 @@ fn a_file_without_time_needs_a_frequency() {
     );
     let reduction = Reduction { sampling_hz: Some(50.0), ..REDUCTION };
     let table = read_csv(text.as_bytes(), "r.csv", &options(""), None, reduction).unwrap();
-    assert_eq!(table.gathered.time_s, [0.0, 0.02, 0.04]);
+    assert_eq!(table.parts[0].time_s, [0.0, 0.02, 0.04]);
     assert!(error("t,u_V,x_um\n1,2,3\n", "").contains("the column `t` has no known unit"));
 }
 
@@ -134,7 +134,7 @@ fn a_million_rows_stream_through() {
     let rows = 1_000_000;
     let reader = Endless { rows, next: 0, buffer: vec![], at: 0 };
     let table = read_csv(reader, "r.csv", &options("time_s,u_V,x_um"), None, REDUCTION).unwrap();
-    let found = table.gathered;
+    let found = &table.parts[0];
     assert_eq!((found.count, found.block), (rows, 1024));
     assert_eq!(found.time_s.len(), rows / 1024);
     for (block, u) in found.columns[0].iter().enumerate() {

@@ -1,17 +1,22 @@
 //! Imported records as a data folder.
 
+use super::columns::{Choice, no_effect};
 use super::gather::Gathered;
 use super::micromag::MicroMag;
-use super::{ImportKind, ImportRequest, Imported, ReadSource, SourceKind, Table, folder_kind};
+use super::{ImportKind, ImportRequest, Imported, ReadSource, SourceKind, folder_kind};
 use crate::dataset::{
     DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, RunFile, check_bench_record,
-    range_unused,
+    monitor_volts, range_unused,
 };
 use crate::error::DataError;
 use crate::files::{ron_text, write_folder};
 use crate::problem::{Fault, Place, Problem, Problems};
-use crate::tables::{Channel, ChannelFile, Record, check_record, check_unit, limits, significant};
+use crate::tables::{
+    Channel, ChannelFile, Record, Spans, check_record, check_rests, check_unit, limits, parted,
+    several_runs, significant,
+};
 use serde::Serialize;
+use std::ops::Range;
 use std::path::Path;
 
 /// Significant digits of the numbers written.
@@ -84,7 +89,9 @@ pub struct ColumnSpan {
 }
 
 pub(super) fn span(label: &str, values: &[f64]) -> ColumnSpan {
+    // as written
     let (least, largest) = limits(values);
+    let [least, largest] = [least, largest].map(|value| significant(value, DIGITS));
     ColumnSpan { column: label.to_owned(), least, largest }
 }
 
@@ -96,6 +103,7 @@ struct Parts {
     files: Vec<(String, Vec<u8>)>,
     problems: Problems,
     warnings: Vec<Problem>,
+    spans: Vec<Spans>,
 }
 
 /// Checks the records and writes the folder.
@@ -117,7 +125,6 @@ pub(super) fn write(
             parts.problems.push(source.place(), Fault::Other(message));
             continue;
         }
-        let id = parts.new_id(&source.path);
         match &source.imported {
             Imported::Record(table) => {
                 let labels = table.choice.labels();
@@ -126,22 +133,37 @@ pub(super) fn write(
                     let (found, expected) = (labels.join(", "), expected.join(", "));
                     parts.problems.push(source.place(), Fault::OtherColumns { found, expected });
                 }
-                let record = parts.record(request.range, &source, table, id);
-                record.map_err(|e| not_written(e.to_string()))?;
+                if kind != DatasetKind::ActuatorBench && request.deg_per_um.is_some() {
+                    let remedy = "leave it out, or name the columns `command` and `displacement`";
+                    let fault = no_effect("--deg-per-um", "this is no actuator bench", remedy);
+                    parts.problems.push(source.place(), fault);
+                }
+                for gathered in &table.parts {
+                    let record = parts.record(request, &source, (&table.choice, gathered));
+                    record.map_err(|e| not_written(e.to_string()))?;
+                }
             }
             Imported::Curves(curves) => {
                 if title.is_none() && !curves.title.is_empty() {
                     title = Some(curves.title.clone());
                 }
+                let id = parts.new_id(&source.path);
                 let written = parts.curves(&source, curves, id);
                 written.map_err(|e| not_written(e.to_string()))?;
             }
         }
     }
-    let Parts { runs, entries, mut files, problems, warnings } = parts;
+    let Parts { runs, entries, mut files, mut problems, mut warnings, spans } = parts;
+    check_rests(&spans, &mut problems, &mut warnings);
+    if kind == DatasetKind::ActuatorBench
+        && let Some((fault, first)) = monitor_volts(&spans).zip(spans.first())
+    {
+        warnings.push(Problem::new(first.place.clone(), fault));
+    }
     problems.into_result(Some(()))?;
     let title = title.unwrap_or_else(|| {
-        let names: Vec<String> = runs.iter().map(|r| file_name(Path::new(&r.source))).collect();
+        let mut names: Vec<String> = runs.iter().map(|r| file_name(Path::new(&r.source))).collect();
+        names.dedup();
         format!("imported from {}", names.join(", "))
     });
     let (range, range_rule) = range_of(request, kind, &runs);
@@ -154,7 +176,7 @@ pub(super) fn write(
         kind,
         title: title.clone(),
         runs: entries,
-        flap_deg_per_um: None,
+        flap_deg_per_um: request.deg_per_um,
         accuracy: None,
         // a bench without a range would get the default one
         command_range_volt: range.filter(|_| !is_loop),
@@ -244,49 +266,65 @@ impl Parts {
 
     fn record(
         &mut self,
-        range: Option<(f64, f64)>,
+        request: &ImportRequest,
         source: &ReadSource,
-        table: &Table,
-        id: String,
+        (choice, gathered): (&Choice, &Gathered),
     ) -> Result<(), csv::Error> {
-        let Table { gathered, choice } = table;
         self.warnings.extend(gathered.warnings.iter().cloned());
         let before = self.problems.as_slice().len();
-        self.check(source, table, range);
+        let windows = if request.split { windows(&gathered.columns[0]) } else { Vec::new() };
+        self.check(source, (choice, gathered), request.range, &windows);
         if self.problems.as_slice().len() > before {
             return Ok(());
         }
         let labels = choice.labels();
-        let columns = labels[1..].iter().zip(&gathered.columns);
         let from = file_name(&source.path);
-        let note = match gathered.block {
+        let mut note = match gathered.block {
             1 => format!("{from}, every sample"),
             block => format!("{from}, means of {block} samples"),
         };
+        for correction in &choice.corrections {
+            note = format!("{note}, {correction}");
+        }
         let step_s = gathered.sampling.step_s * gathered.block as f64;
-        let run = ImportedRun {
-            block: gathered.block,
-            step_s: Some(significant(step_s, 9)),
-            jitter_percent: Some(significant(100.0 * gathered.sampling.jitter, 3)),
-            left_out: choice.left_out.clone(),
-            columns: columns.map(|(label, values)| span(label, values)).collect(),
-            ..source.run(id, [gathered.count, gathered.time_s.len()])
-        };
-        self.files.push((run.file.clone(), csv_table(&labels, record_rows(gathered))?));
-        self.push(run, note, None);
+        let times = written_times(gathered);
+        let first = self.new_id(&source.path);
+        let file = format!("{first}.csv");
+        self.files.push((file.clone(), csv_table(&labels, record_rows(&times, gathered))?));
+        let whole = 0..times.len();
+        let parts = if windows.is_empty() { vec![whole.clone()] } else { windows };
+        for part in parts {
+            let columns = labels[1..].iter().zip(&gathered.columns);
+            let run = ImportedRun {
+                file: file.clone(),
+                block: gathered.block,
+                step_s: Some(significant(step_s, 9)),
+                jitter_percent: Some(significant(100.0 * gathered.sampling.jitter, 3)),
+                left_out: choice.left_out.clone(),
+                columns: columns.map(|(label, v)| span(label, &v[part.clone()])).collect(),
+                ..source.run(self.new_id(&source.path), [gathered.count, part.len()])
+            };
+            let window_s = (part != whole).then(|| (times[part.start], times[part.end - 1]));
+            self.push(run, RunFile { note: note.clone(), window_s, ..RunFile::default() });
+        }
         Ok(())
     }
 
     /// Adds a run to the folder and its description.
-    fn push(&mut self, run: ImportedRun, note: String, calibration: Option<String>) {
+    fn push(&mut self, run: ImportedRun, entry: RunFile) {
         let (id, file) = (run.id.clone(), run.file.clone());
-        self.entries.push(RunFile { id, file, note, calibration, ..RunFile::default() });
+        self.entries.push(RunFile { id, file, ..entry });
         self.runs.push(run);
     }
 
-    fn check(&mut self, source: &ReadSource, table: &Table, range: Option<(f64, f64)>) {
-        let Self { problems, warnings, .. } = self;
-        let Table { gathered, choice } = table;
+    fn check(
+        &mut self,
+        source: &ReadSource,
+        (choice, gathered): (&Choice, &Gathered),
+        range: Option<(f64, f64)>,
+        windows: &[Range<usize>],
+    ) {
+        let Self { problems, warnings, spans, .. } = self;
         let name = source.path.display().to_string();
         let channels: [&Channel; 2] = [&choice.columns[0].channel, &choice.columns[1].channel];
         let labels = channels.map(Channel::label);
@@ -294,6 +332,10 @@ impl Parts {
             |i: usize| (labels[i].as_str(), channels[i].unit.symbol, &gathered.columns[i][..]);
         let (input, output) = (part(0), part(1));
         let record = Record { file: &name, lines: &gathered.lines, input, output };
+        spans.push(Spans::of(&record));
+        if windows.is_empty() {
+            warnings.extend(several_runs(&record));
+        }
         let place = || source.place().field(&labels[0]);
         let (least, largest) = limits(&gathered.columns[0]);
         match choice.kind {
@@ -362,7 +404,7 @@ impl Parts {
             self.files.push((file.clone(), table));
             calibration = Some(file);
         }
-        self.push(run, note, calibration);
+        self.push(run, RunFile { note, calibration, ..RunFile::default() });
         Ok(())
     }
 }
@@ -384,14 +426,32 @@ fn csv_table(
     writer.into_inner().map_err(|e| e.into_error().into())
 }
 
-fn record_rows(gathered: &Gathered) -> impl Iterator<Item = Vec<String>> {
+/// The times of a record as they are written.
+fn written_times(gathered: &Gathered) -> Vec<f64> {
     let time_s = &gathered.time_s;
     let step = (time_s[time_s.len() - 1] - time_s[0]) / (time_s.len() - 1) as f64;
     // digits beyond a millionth of the step are noise of the sums
     let grain = significant(step, 1) * 1e-7;
-    time_s.iter().enumerate().map(move |(i, time)| {
-        let time = significant((time / grain).round() * grain, TIME_DIGITS);
+    let written = |time: &f64| significant((time / grain).round() * grain, TIME_DIGITS);
+    time_s.iter().map(written).collect()
+}
+
+fn record_rows(times: &[f64], gathered: &Gathered) -> impl Iterator<Item = Vec<String>> {
+    times.iter().enumerate().map(|(i, time)| {
         let numbers = gathered.columns.iter().map(|column| number(column[i]));
         std::iter::once(time.to_string()).chain(numbers).collect()
     })
+}
+
+/// The samples of each run of an input that holds several, cut in the middle of the rests between them; none of
+/// an input that holds one.
+fn windows(input: &[f64]) -> Vec<Range<usize>> {
+    let cuts: Vec<usize> =
+        parted(input).into_iter().map(|p| p.rest.start.midpoint(p.rest.end)).collect();
+    if cuts.is_empty() {
+        return Vec::new();
+    }
+    let starts = std::iter::once(0).chain(cuts.iter().copied());
+    let ends = cuts.iter().copied().chain([input.len()]);
+    starts.zip(ends).map(|(start, end)| start..end).collect()
 }

@@ -16,7 +16,14 @@ pub(super) struct Reduction {
     pub(super) reduce_to_hz: Option<f64>,
     /// Sampling frequency of a source without a time, Hz; none where it has one.
     pub(super) sampling_hz: Option<f64>,
+    /// Whether a new record begins where the time goes back or has a gap.
+    pub(super) split: bool,
 }
+
+/// A step of the time that is a gap, in usual steps.
+const GAP: f64 = 10.0;
+/// Fewest samples of a part of a source.
+const LEAST_PART: usize = 16;
 
 /// Samples while they come in.
 ///
@@ -35,6 +42,8 @@ pub(super) struct Gather {
     block_line: usize,
     count: usize,
     time: TimeTrack,
+    /// The records before this one in the source.
+    before: Vec<Self>,
 }
 
 /// Steps of the time as it comes in.
@@ -89,6 +98,20 @@ impl Gather {
             block_line: 0,
             count: 0,
             time: TimeTrack::default(),
+            before: Vec::new(),
+        }
+    }
+
+    /// Begins a new record where a source is to be parted: the time goes back or has a gap.
+    fn part(&mut self, time_s: f64) {
+        let step = time_s - self.time.last_s;
+        let usual = (self.time.last_s - self.time.first_s) / (self.count.max(2) - 1) as f64;
+        let breaks = self.count > 0 && (step <= 0.0 || self.count > 1 && step > GAP * usual);
+        if self.reduction.split && breaks {
+            let fresh = Self::new(&self.file, self.labels.clone(), self.reduction);
+            let mut ended = std::mem::replace(self, fresh);
+            self.before = std::mem::take(&mut ended.before);
+            self.before.push(ended);
         }
     }
 
@@ -112,6 +135,7 @@ impl Gather {
         let time_s = self.reduction.sampling_hz.map(|hz| 1.0 / hz * self.count as f64);
         let mut row = time_s.into_iter().chain(row);
         let Some(time_s) = row.next() else { return };
+        self.part(time_s);
         self.track_time(time_s, line, problems);
         self.count += 1;
         if self.in_block == 0 {
@@ -172,8 +196,30 @@ impl Gather {
         self.block *= factor;
     }
 
-    /// The record; none if it cannot be used, which `problems` then say.
-    pub(super) fn finish(mut self, problems: &mut Problems) -> Option<Gathered> {
+    /// The records, parts of too few samples left out; none if one cannot be used, which `problems` then say.
+    pub(super) fn finish(mut self, problems: &mut Problems) -> Option<Vec<Gathered>> {
+        let mut parts = std::mem::take(&mut self.before);
+        parts.push(self);
+        let all = parts.len();
+        if all > 1 && parts.iter().any(|part| part.count >= LEAST_PART) {
+            parts.retain(|part| part.count >= LEAST_PART);
+        }
+        let left_out = all - parts.len();
+        let file = parts.first().map(|part| part.file.clone()).unwrap_or_default();
+        let mut found = parts
+            .into_iter()
+            .map(|part| part.whole(problems))
+            .collect::<Option<Vec<Gathered>>>()?;
+        if let (1.., Some(first)) = (left_out, found.first_mut()) {
+            let message =
+                format!("{left_out} parts of less than {LEAST_PART} samples are left out");
+            first.warnings.push(Problem::new(Place::file(file), Fault::Other(message)));
+        }
+        Some(found)
+    }
+
+    /// The one record; none if it cannot be used, which `problems` then say.
+    fn whole(mut self, problems: &mut Problems) -> Option<Gathered> {
         std::mem::take(&mut self.time.backward).finish(problems);
         let label = self.labels[0].clone();
         if self.count < LEAST_ROWS {
@@ -264,12 +310,12 @@ mod tests {
             let time = i as f64 * 1e-3 + if i % 2 == 1 { jitter * 1e-3 } else { 0.0 };
             gather.push([time, 2.0 * time], i + 2, &mut problems);
         }
-        let found = gather.finish(&mut problems);
+        let found = gather.finish(&mut problems).and_then(|mut parts| parts.pop());
         problems.into_result(found)
     }
 
     fn reduction(most_samples: usize, reduce_to_hz: Option<f64>) -> Reduction {
-        Reduction { most_samples, reduce_to_hz, sampling_hz: None }
+        Reduction { most_samples, reduce_to_hz, sampling_hz: None, split: false }
     }
 
     #[test]
@@ -306,6 +352,32 @@ mod tests {
         assert!(text.contains("expected uniform sampling"), "{text}");
     }
 
+    /// A time that begins again, a gap, a stray sample between.
+    #[test]
+    fn a_source_is_parted_where_the_time_breaks() {
+        let labels = vec!["time_s".to_owned(), "u_V".to_owned()];
+        let part = |split: bool| {
+            let reduction = Reduction { split, ..reduction(1000, None) };
+            let mut gather = Gather::new("r.csv", labels.clone(), reduction);
+            let mut problems = Problems::default();
+            let starts = [(0.0, 100), (0.0, 50), (3.0, 60), (0.0, 2)];
+            for (start, samples) in starts {
+                for i in 0..samples {
+                    let time = start + 1e-3 * f64::from(i);
+                    gather.push([time, time], 1, &mut problems);
+                }
+            }
+            let found = gather.finish(&mut problems);
+            problems.into_result(found)
+        };
+        let found = part(true).unwrap();
+        let counts: Vec<usize> = found.iter().map(|part| part.count).collect();
+        assert_eq!(counts, [100, 50, 60]);
+        assert!(found[0].warnings[0].to_string().contains("1 parts of less than 16 samples"));
+        assert!((found[2].time_s[0] - 3.0).abs() < 1e-12);
+        part(false).unwrap_err();
+    }
+
     /// Ten million samples: what is kept stays small, and is right.
     #[test]
     fn ten_million_samples_stay_bounded() {
@@ -318,7 +390,7 @@ mod tests {
             largest = largest.max(gather.columns[0].capacity() + gather.lines.capacity());
         }
         assert!(largest <= 4 * 4096, "{largest} numbers kept");
-        let found = gather.finish(&mut problems).unwrap();
+        let found = gather.finish(&mut problems).unwrap().remove(0);
         assert_eq!((found.count, found.block), (10_000_000, 4096));
         assert!(found.columns[0].iter().all(|u| (u - 3.0).abs() < 4e-3), "means of 0 to 6");
     }

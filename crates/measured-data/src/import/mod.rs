@@ -19,7 +19,7 @@ use crate::dataset::DatasetKind;
 use crate::error::DataError;
 use crate::files::{Folder, Source, open_reader};
 use crate::problem::{Fault, Place, Problem, Problems};
-use columns::Choice;
+use columns::{Choice, no_effect};
 use gather::{Gathered, Reduction};
 use serde::{Deserialize, Serialize};
 use std::io::{Cursor, Read};
@@ -89,14 +89,18 @@ pub struct ImportRequest {
     pub most_samples: usize,
     /// Title of the data set; made of the file names if none.
     pub title: Option<String>,
+    /// Flap angle per displacement, deg/um, of an actuator bench.
+    pub deg_per_um: Option<f64>,
+    /// Whether a file is parted into runs, at rests, gaps of time and where the time begins again.
+    pub split: bool,
 }
 
 /// Most samples of a run if the user does not say it.
 pub const MOST_SAMPLES: usize = 1 << 18;
 
-/// A record read from a source.
+/// The records read from a source: one unless it was parted.
 struct Table {
-    gathered: Gathered,
+    parts: Vec<Gathered>,
     choice: Choice,
 }
 
@@ -126,6 +130,9 @@ pub fn import(request: &ImportRequest) -> Result<ImportResult, DataError> {
     }
     check_request(request)?;
     if let (Some(kind), Some(path)) = (sweep::asked_for(request), request.files.first()) {
+        let refused = |fault| Problem::new(Place::file(path.display().to_string()), fault);
+        refuse_without_effect(request, &[], "this is a table of points of test")
+            .map_err(refused)?;
         return sweep::import_sweep(request, path, kind);
     }
     let mut problems = Problems::default();
@@ -163,7 +170,55 @@ fn check_request(request: &ImportRequest) -> Result<(), Problems> {
     if let Some(fault) = request.range.and_then(Fault::of_range) {
         problems.push(place("--range"), fault);
     }
+    if let Some(value) = request.deg_per_um.filter(|v| !(v.is_finite() && *v > 0.0)) {
+        let remedy =
+            "give the angle of the flap for a um of the actuator, or its lever with --arm-mm";
+        problems.push(place("--deg-per-um"), Fault::NotPositive { value, unit: "deg/um", remedy });
+    }
     problems.into_result(Some(()))
+}
+
+/// Refuses options that mean nothing for a source; `words` say what it is.
+fn refuse_without_effect(request: &ImportRequest, of: &[Taken], words: &str) -> Result<(), Fault> {
+    let columns = &request.columns;
+    let given = [
+        (Taken::Variable, "--variable", request.variable.is_some()),
+        (Taken::Columns, "--columns", columns.columns.is_some()),
+        (Taken::Columns, "--input", columns.input.is_some()),
+        (Taken::Columns, "--response", columns.response.is_some()),
+        (Taken::Columns, "--convert", columns.convert.is_some()),
+        (Taken::Columns, "--scale", columns.scale.is_some()),
+        (Taken::Columns, "--offset", columns.offset.is_some()),
+        (Taken::Samples, "--range", request.range.is_some()),
+        (Taken::Samples, "--sampling-hz", request.sampling_hz.is_some()),
+        (Taken::Samples, "--reduce-to-hz", request.reduce_to_hz.is_some()),
+        (Taken::Samples, "--split", request.split),
+        (Taken::Samples, "--deg-per-um", request.deg_per_um.is_some()),
+    ];
+    let idle = given.into_iter().find(|(needs, _, is_given)| *is_given && !of.contains(needs));
+    idle.map_or(Ok(()), |(_, option, _)| Err(no_effect(option, words, "leave it out")))
+}
+
+/// What of a source options may speak of.
+#[derive(Clone, Copy, PartialEq)]
+enum Taken {
+    /// One of its variables.
+    Variable,
+    /// Its columns.
+    Columns,
+    /// Samples in time.
+    Samples,
+}
+
+impl SourceKind {
+    /// What options may speak of.
+    fn takes(self) -> &'static [Taken] {
+        match self {
+            Self::Csv => &[Taken::Columns, Taken::Samples],
+            Self::Mat => &[Taken::Variable, Taken::Columns, Taken::Samples],
+            Self::MicromagForc => &[],
+        }
+    }
 }
 
 /// Bytes by which a source is recognised.
@@ -182,11 +237,14 @@ fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Probl
             "is not recognised as CSV, MAT v5 or a MicroMag FORC file; say what it is with --as";
         return Err(refused(Fault::Other(message.to_owned())).into());
     };
+    let words = format!("this is a {}", kind.words());
+    refuse_without_effect(request, kind.takes(), &words).map_err(refused)?;
     let reduction = Reduction {
         // halving needs an even number
         most_samples: request.most_samples & !1,
         reduce_to_hz: request.reduce_to_hz,
         sampling_hz: request.sampling_hz,
+        split: request.split,
     };
     let mut recognised = kind.words().to_owned();
     let mut whole = Cursor::new(start).chain(reader);

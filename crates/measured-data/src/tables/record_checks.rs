@@ -42,29 +42,35 @@ pub fn limits(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)))
 }
 
-/// Refuses columns that never change and warns of clipped outputs; whether both columns move.
+/// Refuses outputs that never change and warns of those that are clipped; whether both columns
+/// move. An input that never changes is judged beside the other records.
 pub(crate) fn check_record(
     record: &Record<'_>,
     problems: &mut Problems,
     warnings: &mut Vec<Problem>,
 ) -> bool {
-    let mut moves = true;
-    for ((label, unit, values), role) in [(record.input, "input"), (record.output, "output")] {
+    let [rests, is_dead] = [record.input.2, record.output.2].map(|values| {
         let (low, high) = limits(values);
-        if low >= high {
-            // minus zero is zero
-            let message = format!(
-                "every sample is {} {unit}: nothing can be learnt from a constant {role}; check that the right column was recorded",
-                low + 0.0
-            );
-            problems.push(record.place(0, label), Fault::Other(message));
-            moves = false;
-        }
+        low >= high
+    });
+    if is_dead {
+        let (label, unit, values) = record.output;
+        let fault = constant(values, unit, "output");
+        problems.push(record.place(0, label), fault);
     }
-    if moves {
+    if !rests && !is_dead {
         warnings.extend(clipped(record));
     }
-    moves
+    !rests && !is_dead
+}
+
+/// The fault of a column that never changes, from its limits.
+pub(super) fn constant(values: &[f64], unit: &str, role: &str) -> Fault {
+    // minus zero is zero
+    let value = limits(values).0 + 0.0;
+    Fault::Other(format!(
+        "every sample is {value} {unit}: nothing can be learnt from a constant {role}; check that the right column was recorded"
+    ))
 }
 
 /// The longest flat top at either limit of the output while the input moves on.

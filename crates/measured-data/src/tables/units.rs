@@ -1,6 +1,7 @@
 //! Units of measured columns, and the factors between them.
 
 use crate::problem::Fault;
+use rotor_base::significant;
 
 /// What a unit measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,11 +197,6 @@ impl Channel {
     pub fn is_time(&self) -> bool {
         self.unit.dimension == Dimension::Time && matches!(self.name.as_str(), "time" | "t")
     }
-}
-
-/// A number rounded to so many significant digits.
-pub fn significant(value: f64, digits: usize) -> f64 {
-    format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value)
 }
 
 #[cfg(test)]

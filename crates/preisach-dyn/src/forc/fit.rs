@@ -2,8 +2,8 @@
 
 use super::everett_map::{corners, play_map, unknown, weights};
 use super::{ForcCurve, ForcData};
-use crate::check::{check_count, check_positive};
-use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::check::{check_count, check_positive, extremes};
+use crate::identify::fit::program::{LeastSquaresProgram, Row, offset};
 use crate::identify::fit::static_fit::{merged, smooth_density};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach, VoltageRange};
 use rotor_base::mean_square;
@@ -73,6 +73,8 @@ pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, Preisach
     let grid = PreisachGrid::new(range, settings.levels)?;
     let levels = grid.levels();
     let span = data.output_span();
+    let outputs = data.curves.iter().flat_map(|c| c.output.iter().copied());
+    let offset = offset(extremes(outputs));
     let mut program = LeastSquaresProgram::new(unknown(levels, levels - 1) + 1);
     let samples: usize = data.curves.iter().map(|c| c.input.len()).sum();
     let weight = 1.0 / samples as f64;
@@ -81,14 +83,16 @@ pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, Preisach
             let mut row: Row = vec![(0, 1.0)];
             weights(&grid, range.highest_volt(), input[0], -1.0, &mut row);
             weights(&grid, u, input[0], 1.0, &mut row);
-            program.add(&merged(row), y / span, weight);
+            program.add(&merged(row), (y - offset) / span, weight);
         }
     }
     let cells = levels * (levels + 1) / 2;
     let penalty = settings.smoothness * cells as f64;
     smooth_density(levels, penalty, rise, &mut program);
     let solution = program.solve("density of the reversal curves")?;
-    let model = StaticPreisach::new(grid, play_map(levels, &solution, span))?;
+    let mut map = play_map(levels, &solution, span);
+    map.constant += offset;
+    let model = StaticPreisach::new(grid, map)?;
     let curves = data.curves.iter().map(|curve| misfit(&model, curve, span)).collect();
     Ok(ForcFit { model, curves })
 }

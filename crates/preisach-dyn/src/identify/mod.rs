@@ -25,7 +25,8 @@ pub use fit::stream::StaticAccumulator;
 pub use fit::validate::Validation;
 pub use records::drive::{Drive, Waveform};
 pub use records::findings::{Channel, Finding, Identifiability, Severity};
-pub use records::noise::CycleNoise;
+pub use records::glance::Glance;
+pub use records::noise::{CycleNoise, RestNoise};
 pub use records::record::{BenchRecord, RecordWindows};
 pub use records::settings::{FlapZero, RateSmoothness, Settings};
 pub use records::split_rule::SplitRule;
@@ -34,7 +35,7 @@ pub use rotor_base::RecordUse;
 
 use crate::{ActuatorLaw, ActuatorModel, PreisachError, PreisachGrid, StaticPreisach};
 use fit::output_error::Uncertainty;
-use fit::preisach::{RateFit, fit_linear, trained_range, zero_deg};
+use fit::preisach::{RateFit, fit_linear, trained_range};
 use fit::refine::Refined;
 use fit::roles::Bench;
 use fit::training::Training;
@@ -158,12 +159,12 @@ pub fn identify(
     if unexplained > MOST_UNEXPLAINED {
         summary.findings.push(Finding::NotDescribed { nrmse_percent: 100.0 * unexplained });
     }
-    let zero_deg = zero_deg(&training);
+    let rigged = |model: ActuatorModel| bench.rigged(model, &training);
     Ok(Identification {
-        dynamic: dynamic.shifted(-zero_deg),
-        static_only: static_only.shifted(-zero_deg),
-        linear: linear.shifted(-zero_deg),
-        zero_deg,
+        dynamic: rigged(dynamic),
+        static_only: rigged(static_only),
+        linear: rigged(linear),
+        zero_deg: bench.zero_deg(&training),
         records: reports,
         rate_smoothness: rate.smoothness,
         validation: rate.validation,

@@ -9,6 +9,7 @@ mod identifiability;
 mod inverse;
 mod laws;
 mod model_table;
+mod offset;
 mod oracles;
 mod own_truth;
 mod periodic;

@@ -235,3 +235,57 @@ fn a_long_record_streams_in_bounded_memory_and_gives_the_batch_fit() {
     assert!(StaticAccumulator::new(&settings, 0).is_err());
     assert!(StaticAccumulator::new(&settings, 1).unwrap().fit().is_err());
 }
+
+/// Plays without weight act on nothing: what they are is not known, and the gain is known as well as it is.
+#[test]
+fn parameters_without_influence_cost_the_others_no_digits() {
+    let truth = bare(ActuatorLaw::StaticPreisach(static_law(12)));
+    let normal = Normal::new(0.0, 0.05).unwrap();
+    let deviations = |command_noise: f64| -> Vec<f64> {
+        let mut rng = ChaCha8Rng::seed_from_u64(4);
+        let records: Vec<BenchRecord> = runs()
+            .into_iter()
+            .map(|run| {
+                let mut record = record(&truth, run, || normal.sample(&mut rng));
+                for (i, u) in record.voltage_volt.iter_mut().enumerate() {
+                    *u = (*u + command_noise * (7919.0 * i as f64).sin()).clamp(-20.0, 150.0);
+                }
+                record
+            })
+            .collect();
+        let families = vec![Family::PrandtlIshlinskii];
+        let candidates = Candidates { families, orders: Vec::new() };
+        let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
+        let fitted = table.rows[0].fitted.as_ref().unwrap();
+        fitted.parameters.iter().map(|p| p.std_deviation).collect()
+    };
+    let (clean, noisy) = (deviations(0.0), deviations(0.01));
+    assert!(clean[0] < 0.1 && (0.3..3.0).contains(&(noisy[0] / clean[0])), "{clean:?} {noisy:?}");
+    for all in [&clean, &noisy] {
+        assert!(all.iter().all(|d| *d <= 10.0 || d.is_infinite()), "{all:?}");
+    }
+}
+
+/// What the records do not determine has the deviation of the usual value, and says so.
+#[test]
+fn what_only_usual_values_say_is_called_tied() {
+    let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(10)));
+    let elements = vec![RelaxationElement { share: 1.0, time_constant_s: 0.02 }];
+    truth.linkage.push(LinkageStage::Relaxation(Relaxation { elements }));
+    let mut rng = ChaCha8Rng::seed_from_u64(9);
+    let normal = Normal::new(0.0, 0.05).unwrap();
+    let records: Vec<BenchRecord> = [sine(0.2, 85.0, 3.0, 1e-2), sine(10.0, 85.0, 6.0, 2e-3)]
+        .into_iter()
+        .map(|run| record(&truth, run, || normal.sample(&mut rng)))
+        .collect();
+    let families = vec![Family::StaticPreisachRelaxation];
+    let candidates = Candidates { families, orders: Vec::new() };
+    let settings = Settings { levels: 10, rate_levels: 5, ..settings() };
+    let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+    let parameters = &table.rows[0].fitted.as_ref().unwrap().parameters;
+    println!("{parameters:#?}");
+    // the time is found; a share that follows at once is left to what is usual, with its deviation
+    assert!(!parameters[0].is_tied() && parameters[0].std_deviation < 0.2, "{parameters:?}");
+    let at_once = &parameters[1];
+    assert!(at_once.is_tied() && (0.5..1.5).contains(&at_once.std_deviation), "{at_once:?}");
+}

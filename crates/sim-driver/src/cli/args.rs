@@ -190,6 +190,9 @@ pub struct IdentifyArgs {
     /// Folder for the data of the figures: loops with residuals, density; CSV.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
+    /// Replace the file to write even if it is no actuator file.
+    #[arg(long)]
+    pub force: bool,
     /// Model to judge and to write; all of them are fitted and compared in any case.
     #[arg(long, value_parser = model_parser(), default_value = "best")]
     pub model: ModelChoice,
@@ -230,6 +233,21 @@ pub struct ImportArgs {
     /// Units to convert into, for generic loops: `displacement_mm,force_N`.
     #[arg(long, value_name = "LIST")]
     pub convert: Option<String>,
+    /// Factors of columns whose recorder divided: `command=15,displacement=100`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub scale: Option<String>,
+    /// What to add to columns then, in their units: `displacement=-30000`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub offset: Option<String>,
+    /// Flap angle per displacement of an actuator bench, deg/um.
+    #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
+    pub deg_per_um: Option<f64>,
+    /// Lever from the actuator to the hinge of the flap, mm: the same as --deg-per-um 0.0573/MM.
+    #[arg(long, value_name = "MM", allow_negative_numbers = true, conflicts_with = "deg_per_um")]
+    pub arm_mm: Option<f64>,
+    /// Part files into runs: at rests longer than a period, gaps, and where the time begins again.
+    #[arg(long)]
+    pub split: bool,
     /// Range of the command in V, or of the input in its unit: LOW,HIGH.
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,

@@ -6,7 +6,7 @@ use crate::SimError;
 use crate::case::starting_case;
 use crate::check::check_file;
 use crate::files::write_new;
-use crate::import::{ColumnOptions, ImportRequest, default_folder};
+use crate::import::{ColumnOptions, ImportReport, ImportRequest, default_folder};
 use crate::output::{Format, Printable, print};
 use std::path::{Path, PathBuf};
 
@@ -22,6 +22,8 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
             input: args.input.clone(),
             response: args.response.clone(),
             convert: args.convert.clone(),
+            scale: args.scale.clone(),
+            offset: args.offset.clone(),
         },
         variable: args.variable.clone(),
         range: args.range,
@@ -29,8 +31,10 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
         reduce_to_hz: args.reduce_to_hz,
         most_samples: args.max_samples,
         title: args.title.clone(),
+        deg_per_um: args.deg_per_um.or(args.arm_mm.map(|arm_mm| (1e-3 / arm_mm).to_degrees())),
+        split: args.split,
     };
-    let result = crate::import::import(&request)?;
+    let result = ImportReport::from(crate::import::import(&request)?);
     warn(&result.warnings, Format::Details);
     print(&result.render(args.format)?)
 }

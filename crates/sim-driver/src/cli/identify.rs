@@ -5,12 +5,14 @@ use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
-use crate::files::{DataSet, Folder, Source, read_dataset, refuse_inside};
+use crate::files::{
+    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
+};
 use crate::identification::{BenchIdentification, MODELS_COMPARED, identify_bench, identify_loops};
 use crate::output::{Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use crate::stored_actuator::{StoredActuator, read_actuator, write_actuator};
+use crate::stored_actuator::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use preisach_dyn::identify::Settings;
 
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
@@ -20,6 +22,9 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     };
     refuse_inside(&args.bench, &args.output)?;
     refuse_inputs(args.start.as_deref(), Some(&args.output))?;
+    if !args.force {
+        refuse_other_kind(&args.output, "Actuator")?;
+    }
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
     let progress = Progress::new(MODELS_COMPARED);
@@ -49,6 +54,8 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
             record_files(&picked(found, args, &progress)?, written, args)?
         }
     };
+    let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
+    warn(&actuator_warnings(&stored, place), args.format.form());
     write_actuator(&stored, &args.output)?;
     if let (Some(folder), Some(figures)) = (&args.figures, figures) {
         write_texts(folder, figures)?;

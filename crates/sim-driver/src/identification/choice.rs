@@ -1,9 +1,10 @@
 //! Which of the fitted models is used.
 
-use super::{BenchIdentification, dataset_place, judge};
+use super::{BenchIdentification, dataset_place};
 use crate::SimError;
 use crate::choices::spelt;
 use crate::problem::{Fault, Problem};
+use actuator_gap::judged;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use preisach_dyn::identify::{Estimate, Family, ModelRow, Order, Settings};
 use serde::Serialize;
@@ -98,7 +99,8 @@ impl BenchIdentification {
         let parameters = fitted.parameters.clone();
         self.pick = Pick { family: *family, order: *order, reason, parameters };
         self.model = fitted.model.clone();
-        self.fits = judge::judged(&self.heading, &self.records, &self.identification, &self.model)?;
+        let fits = judged(&self.records, &self.identification, &self.model);
+        self.fits = fits.map_err(|e| self.heading.misjudged(e))?;
         Ok(())
     }
 }

@@ -1,7 +1,6 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 mod choice;
-mod judge;
 mod summary;
 
 pub(crate) use choice::model_parser;
@@ -13,6 +12,7 @@ use crate::SimError;
 use crate::files::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use crate::problem::Place;
 use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+use actuator_gap::{DiagnosisError, NotJudged, judged};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
     RecordWindows, Settings, Subject, compare_models, identify,
@@ -73,14 +73,22 @@ impl DataHeading {
         })
     }
 
+    /// A record that cannot be judged, at the place of the data set.
+    fn misjudged(&self, NotJudged { id, source }: NotJudged) -> SimError {
+        match source {
+            DiagnosisError::Actuator(source) => self.failed(source),
+            source => SimError::Diagnosis { place: dataset_place(&self.folder).field(id), source },
+        }
+    }
+
     /// An error of the model or its identification, at the place of the data set.
     pub(crate) fn failed(&self, source: PreisachError) -> SimError {
         let place = dataset_place(&self.folder);
         match self.subject() {
-            Subject::Actuator => SimError::Actuator { place, source },
             subject @ Subject::Loop { .. } => {
                 SimError::Loop { place, message: subject.error(&source), source }
             }
+            _ => SimError::Actuator { place, source },
         }
     }
 }
@@ -162,7 +170,7 @@ pub fn identify_loops(
 }
 
 /// The runs as an identification sees them, with a gain from their outputs.
-fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
+pub(crate) fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
     let record = |run: &Run| {
         // a window trains and judges alike; without one all of the run does
         let window = run.entry.window_s.map(|_| run.window());
@@ -193,12 +201,14 @@ fn identified(
     settings: Settings,
     compared: Compared<'_>,
 ) -> Result<BenchIdentification, SimError> {
+    let (rests, records): (Vec<_>, Vec<_>) = records.into_iter().partition(BenchRecord::is_at_rest);
     let table = || {
         let candidates = Candidates::default();
         compared.map(|done| compare_models(&records, &settings, &candidates, done)).transpose()
     };
     let (identification, comparison) = rayon::join(|| identify(&records, &settings), table);
-    let identification = identification.map_err(|e| heading.failed(e))?;
+    let mut identification = identification.map_err(|e| heading.failed(e))?;
+    identification.summary.findings.extend(rests.iter().map(Finding::of_rest));
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
@@ -208,7 +218,7 @@ fn identified(
         return Err(heading.failed(PreisachError::NotDescribed { nrmse_percent }));
     }
     let model = identification.dynamic.clone();
-    let fits = judge::judged(&heading, &records, &identification, &model)?;
+    let fits = judged(&records, &identification, &model).map_err(|e| heading.misjudged(e))?;
     let pick = Pick::first_fit(&settings);
     let comparison = comparison.map_err(|source| heading.failed(source))?;
     Ok(BenchIdentification {

@@ -346,7 +346,8 @@ fn parameter_table(parameters: &[Estimate]) -> String {
         &["parameter", "value", "std deviation"],
         parameters.iter().map(|p| {
             let deviation = if p.std_deviation.is_finite() {
-                significant(p.std_deviation, 2).to_string()
+                let tied = if p.is_tied() { ", tied to its usual value" } else { "" };
+                format!("{}{tied}", significant(p.std_deviation, 2))
             } else {
                 "not determined".to_owned()
             };

@@ -8,6 +8,7 @@ mod compare;
 mod disk;
 mod identify;
 mod import;
+mod lab;
 mod measured;
 mod place;
 mod points;

@@ -141,6 +141,8 @@ fn held_out_curves() -> Result<f64, Failure> {
         variable: None,
         range: None,
         sampling_hz: None,
+        deg_per_um: None,
+        split: false,
         reduce_to_hz: None,
         most_samples: MOST_SAMPLES,
         title: None,

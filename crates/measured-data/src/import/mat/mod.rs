@@ -49,7 +49,7 @@ pub(super) fn read_mat(
         let numbers = choice.taken().map(|taken| found.columns[taken.source][i]);
         gather.push(choice.converted(numbers), i + 1, &mut problems);
     }
-    let gathered = gather.finish(&mut problems);
-    let table = gathered.map(|gathered| (Table { gathered, choice }, found.taken));
+    let parts = gather.finish(&mut problems);
+    let table = parts.map(|parts| (Table { parts, choice }, found.taken));
     problems.into_result(table)
 }

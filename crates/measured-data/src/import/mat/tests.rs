@@ -190,13 +190,14 @@ fn a_record_with_units_of_its_own() {
         columns: Some("time_s=t,command_V=u,displacement_mm=x".into()),
         ..ColumnOptions::default()
     };
-    let reduction = Reduction { most_samples: 64, reduce_to_hz: None, sampling_hz: None };
+    let reduction =
+        Reduction { most_samples: 64, reduce_to_hz: None, sampling_hz: None, split: false };
     let read = |variable, options: &ColumnOptions| {
         read_mat(&sample(true, true), "b.mat", (options, variable), None, reduction)
     };
     let (table, taken) = read(Some("bench.run(1)"), &options).unwrap();
     assert_eq!(table.choice.labels(), ["time_s", "command_V", "displacement_um"]);
-    assert!((table.gathered.columns[1][2] - 210_000.0).abs() < 1e-9);
+    assert!((table.parts[0].columns[1][2] - 210_000.0).abs() < 1e-9);
     assert!(taken.contains("t, u, x of 5 samples"), "{taken}");
     let error = read(Some("bench.run(1)"), &ColumnOptions::default()).err().unwrap().to_string();
     assert!(error.contains("b.mat: the column `t` has no known unit"), "{error}");

@@ -3,7 +3,7 @@
 use crate::identify::families::by_family;
 use crate::identify::families::family::{Family, Fitted, Given};
 use crate::identify::fit::output_error::Estimate;
-use crate::identify::fit::preisach::{trained_range, zero_deg};
+use crate::identify::fit::preisach::trained_range;
 use crate::identify::fit::roles::Bench;
 use crate::identify::fit::training::Training;
 use crate::identify::fit::{compare, static_fit, validate};
@@ -148,7 +148,7 @@ pub fn compare_models(
     let bench = Bench::new(records, settings)?;
     let contest = Contest::new(&bench, settings)?;
     let own = Order::of(settings);
-    let (mut rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
+    let (rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
         .families
         .par_iter()
         .map(|&family| contest.row(family, own, Folds::Conditions, None).inspect(|_| done()))
@@ -182,11 +182,6 @@ pub fn compare_models(
         chosen_order = if by_error { best(&orders, 1.0) } else { asked_for.unwrap_or(0) };
     }
     let Contest { zero_deg, summary, .. } = contest;
-    for row in rows.iter_mut().chain(&mut orders) {
-        if let Ok(fitted) = &mut row.fitted {
-            fitted.model = fitted.model.clone().shifted(-zero_deg);
-        }
-    }
     let ids = records.iter().map(|r| r.id.clone());
     let records = ids.zip(bench.uses().iter().copied()).collect();
     Ok(ModelComparison { rows, chosen, orders, chosen_order, records, zero_deg, summary })
@@ -238,7 +233,7 @@ impl<'a> Contest<'a> {
         let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
         let prepared = bench.prepared(&grid, settings)?;
         let training = Training::of(&prepared, grid, settings)?;
-        let (summary, zero_deg) = (bench.summary(&training), zero_deg(&training));
+        let (summary, zero_deg) = (bench.summary(&training), bench.zero_deg(&training));
         // one smoothness for all folds, chosen on the training records
         let map = static_fit::as_measured(&training)?;
         let smoothness = validate::smoothness(&training, &map).0;
@@ -296,6 +291,7 @@ impl<'a> Contest<'a> {
             model.trained = Some(trained_range(&training, prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
+            let model = self.bench.rigged(model, &training);
             Ok(FittedModel { model, fits, parameters })
         });
         Ok((ModelRow { family, order, cross_validation, fitted }, trial))

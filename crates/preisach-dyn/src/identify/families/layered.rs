@@ -169,7 +169,10 @@ const INDEPENDENT: f64 = 200.0;
 
 /// Pulls that weigh what is known against records that leave a misfit: `nrmse / (sqrt(n) sigma)`.
 fn pulls(nrmse: f64) -> [Pull; STAGES] {
-    KNOWN.map(|(at, deviation)| Pull { at, weight: nrmse / (INDEPENDENT.sqrt() * deviation) })
+    KNOWN.map(|(at, deviation)| {
+        let weight = nrmse / (INDEPENDENT.sqrt() * deviation);
+        Pull { at, weight, deviation }
+    })
 }
 
 const NAMES: [&str; STAGES + SHAPE] = [

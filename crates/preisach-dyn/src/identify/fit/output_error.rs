@@ -3,6 +3,7 @@
 use crate::ActuatorModel;
 use crate::identify::fit::passage::{Command, Passage};
 use crate::identify::records::prepared::Prepared;
+use crate::laws::play_map::split;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 use rayon::prelude::*;
@@ -15,6 +16,8 @@ const MOST_RESIDUALS: usize = 800;
 const PENALTY: f64 = 10.0;
 /// A parameter whose influence is below this share of the largest has none.
 const DEAD: f64 = 1e-10;
+/// Largest deviation of a parameter of order one that is knowledge.
+const MOST_DEVIATION: f64 = 10.0;
 /// Step of the difference quotients.
 const DIFFERENCE: f64 = 1e-5;
 
@@ -30,6 +33,18 @@ pub(crate) type Build<'a> = &'a (dyn Fn(&DVector<f64>) -> Option<ActuatorModel> 
 pub(crate) struct Pull {
     pub(crate) at: f64,
     pub(crate) weight: f64,
+    /// Standard deviation of what is known.
+    pub(crate) deviation: f64,
+}
+
+impl Pull {
+    /// Information on the parameter, and that information times the variance of the residual behind it.
+    fn information(self) -> [f64; 2] {
+        let own = self.weight * self.weight;
+        // nothing is known where the deviation is infinite
+        let noise = if own > 0.0 { self.weight * self.deviation } else { 0.0 };
+        [own, own * noise * noise]
+    }
 }
 
 /// A parameter with its uncertainty.
@@ -41,6 +56,16 @@ pub struct Estimate {
     pub value: f64,
     /// Standard deviation; infinite if the records do not determine the parameter.
     pub std_deviation: f64,
+    /// Share of what is known of it that comes from usual values instead of the records, 0 to 1.
+    #[serde(default)]
+    pub usual_share: f64,
+}
+
+impl Estimate {
+    /// Whether usual values say more of it than the records do.
+    pub fn is_tied(&self) -> bool {
+        self.usual_share > 0.5
+    }
 }
 
 /// The samples that the slopes of a search come from; residuals come from all.
@@ -80,6 +105,7 @@ pub(crate) fn estimates(
         name: (*name).to_owned(),
         value,
         std_deviation: covariance.map_or(f64::INFINITY, |c| c.std_deviation(k)),
+        usual_share: covariance.and_then(|c| c.usual_shares.get(k).copied()).unwrap_or(0.0),
     };
     names.iter().zip(x).enumerate().map(estimate).collect()
 }
@@ -92,7 +118,13 @@ pub(crate) fn estimates(
 /// Gauss-Newton about the minimum, record by record `k` with its own residual variance `s_k^2`. What a
 /// model misses is correlated from sample to sample, so `n` samples are worth `n / T_k` independent
 /// ones; the autocorrelations are summed up to their first zero. Misfit of the model counts as noise
-/// here: where it dominates, the true parameters of a better model may lie further off.
+/// here: where it dominates, the true parameters of a better model may lie further off. Cycles and records are
+/// drawn anew besides: to first order a bootstrap over them has, in the place of the sum,
+/// ```text
+/// sum_c n / (n - 1) g_c g_c',   g_c = J_c' r_c over one of n cycles (one of n records)
+/// ```
+/// and the largest of the three deviations stands. What is known beforehand counts as a measurement. A deviation
+/// beyond 10, for parameters of order one, is no knowledge: infinite.
 /// Source: G. A. F. Seber, C. J. Wild, *Nonlinear Regression* (1989), sections 2.1 and 6.2.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Covariance {
@@ -102,6 +134,9 @@ pub struct Covariance {
     pub samples: usize,
     /// Independent residuals they are worth.
     pub effective_samples: f64,
+    /// Share of what is known of each parameter that comes from usual values, 0 to 1.
+    #[serde(default)]
+    pub usual_shares: Vec<f64>,
 }
 
 impl Covariance {
@@ -264,34 +299,115 @@ impl<'a> OutputError<'a> {
     fn covariance(&self) -> Option<Covariance> {
         let here = self.here.as_ref()?;
         let whole = self.jacobian()?;
+        let sizes: Vec<f64> = whole.column_iter().map(|c| c.norm()).collect();
         // what has no influence is left out: its variance is infinite
-        let largest = whole.column_iter().map(|c| c.norm()).fold(0.0, f64::max);
-        let active: Vec<usize> =
-            (0..self.x.len()).filter(|&k| whole.column(k).norm() > DEAD * largest).collect();
-        let jacobian = whole.select_columns(&active);
-        let inverse = (jacobian.transpose() * &jacobian).cholesky()?.inverse();
-        let mut middle = DMatrix::zeros(active.len(), active.len());
-        let (mut first, mut effective_samples) = (0, 0.0);
-        for prepared in self.records {
-            let count = Self::kept(prepared).count();
-            let residuals: Vec<f64> = here.rows(first, count).iter().copied().collect();
-            let rows = jacobian.rows(first, count);
-            let variance = residuals.iter().map(|r| r * r).sum::<f64>() / count as f64;
-            let time = correlation_time(&residuals);
-            middle += rows.transpose() * rows * (variance * time);
-            effective_samples += count as f64 / time;
-            first += count;
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let active: Vec<usize> = (0..self.x.len()).filter(|&k| sizes[k] > DEAD * largest).collect();
+        // columns of one size: parameters of little influence must not cost the others their digits
+        let mut jacobian = whole.select_columns(&active);
+        for (mut column, &k) in jacobian.column_iter_mut().zip(&active) {
+            column /= sizes[k];
         }
-        let matrix = &inverse * middle * &inverse;
+        let inverse = (jacobian.transpose() * &jacobian).cholesky()?.inverse();
+        let Scores { noise, cycles, records, samples, effective_samples } =
+            self.scores(here, &jacobian);
+        let pulls = active.iter().map(|&k| self.pulls.get(k).copied().map(Pull::information));
+        let pulls: Vec<[f64; 2]> = pulls.map(Option::unwrap_or_default).collect();
+        let sandwich = |mut middle: DMatrix<f64>| {
+            for (i, (&k, [_, noise])) in active.iter().zip(&pulls).enumerate() {
+                middle[(i, i)] += noise / (sizes[k] * sizes[k]);
+            }
+            &inverse * middle * &inverse
+        };
+        let mut matrix = sandwich(noise);
+        let drawn = [cycles, records].map(sandwich);
+        let widened = |i: usize| {
+            let largest = drawn.iter().map(|m| m[(i, i)]).fold(matrix[(i, i)], f64::max);
+            (largest / matrix[(i, i)].max(f64::MIN_POSITIVE)).sqrt()
+        };
+        let factors: Vec<f64> = (0..active.len()).map(widened).collect();
+        for i in 0..active.len() {
+            for j in 0..active.len() {
+                matrix[(i, j)] *= factors[i] * factors[j] / (sizes[active[i]] * sizes[active[j]]);
+            }
+        }
         let mut rows = vec![vec![0.0; self.x.len()]; self.x.len()];
+        let mut usual_shares = vec![0.0; self.x.len()];
         (0..self.x.len()).for_each(|k| rows[k][k] = f64::INFINITY);
         for (i, &row) in active.iter().enumerate() {
+            let [own, _] = pulls[i];
+            usual_shares[row] = own * inverse[(i, i)] / (sizes[row] * sizes[row]);
+            if matrix[(i, i)].sqrt() > MOST_DEVIATION {
+                continue;
+            }
             for (j, &column) in active.iter().enumerate() {
                 rows[row][column] = matrix[(i, j)];
             }
         }
-        Some(Covariance { rows, samples: first, effective_samples })
+        Some(Covariance { rows, samples, effective_samples, usual_shares })
     }
+
+    /// The sums of the scores `J' r` that a covariance is made of, from scaled columns.
+    fn scores(&self, here: &DVector<f64>, jacobian: &DMatrix<f64>) -> Scores {
+        let count = jacobian.ncols();
+        let mut sums = Scores {
+            noise: DMatrix::zeros(count, count),
+            cycles: DMatrix::zeros(count, count),
+            records: DMatrix::zeros(count, count),
+            samples: 0,
+            effective_samples: 0.0,
+        };
+        let share = |drawn: usize| drawn as f64 / (drawn.max(2) - 1) as f64;
+        for prepared in self.records {
+            let kept = Self::kept(prepared).count();
+            let residuals: Vec<f64> = here.rows(sums.samples, kept).iter().copied().collect();
+            let rows = jacobian.rows(sums.samples, kept);
+            let variance = residuals.iter().map(|r| r * r).sum::<f64>() / kept as f64;
+            let time = correlation_time(&residuals);
+            sums.noise += rows.transpose() * rows * (variance * time);
+            sums.effective_samples += kept as f64 / time;
+            let parts = Self::cycles(prepared).clamp(1, kept);
+            let whole = rows.transpose() * here.rows(sums.samples, kept);
+            let length = kept.div_ceil(parts);
+            let mut drawn = DMatrix::zeros(count, count);
+            let starts = (0..kept).step_by(length);
+            let used = starts.len();
+            for start in starts {
+                let part = start..(start + length).min(kept);
+                let score = rows.rows(part.start, part.len()).transpose()
+                    * here.rows(sums.samples + part.start, part.len())
+                    - &whole / used as f64;
+                drawn += &score * score.transpose();
+            }
+            if used > 1 {
+                sums.cycles += drawn * share(used);
+            }
+            if self.records.len() > 1 {
+                sums.records += &whole * whole.transpose() * share(self.records.len());
+            }
+            sums.samples += kept;
+        }
+        sums
+    }
+
+    /// Whole cycles of the samples of a record that train; 1 of what does not repeat.
+    fn cycles(record: &Prepared) -> usize {
+        let seconds = record.record.trained_samples().len() as f64 * record.record.time_step_s;
+        let periods = if record.drive.is_periodic() { seconds * record.drive.base_hz } else { 1.0 };
+        split(periods + 0.5).0
+    }
+}
+
+/// Sums of scores, with columns scaled to one size.
+struct Scores {
+    /// Of noise of the correlation that the residuals show.
+    noise: DMatrix<f64>,
+    /// Of cycles drawn anew in every record.
+    cycles: DMatrix<f64>,
+    /// Of records drawn anew.
+    records: DMatrix<f64>,
+    samples: usize,
+    effective_samples: f64,
 }
 
 /// `1 + 2 sum rho` up to the first lag at which the autocorrelation is not positive.

@@ -6,7 +6,7 @@ use crate::identify::fit::refine::{self, Refined};
 use crate::identify::fit::training::Training;
 use crate::identify::fit::{rate_fit, static_fit, validate};
 use crate::identify::records::prepared::Prepared;
-use crate::identify::{BenchRecord, Drive, FlapZero, Validation};
+use crate::identify::{BenchRecord, Drive, Validation};
 use crate::{
     DynamicPreisach, HysteresisLaw, LinearGain, PlayMap, PreisachError, StartState, TrainedRange,
 };
@@ -75,17 +75,9 @@ pub(crate) fn fit_linear(slow: &[&Prepared]) -> LinearGain {
     LinearGain { gain_deg_per_volt: gain, bias_volt: (u1 - y1 / gain) / w }
 }
 
-/// Output of the records that is zero flap angle, deg.
-pub(crate) fn zero_deg(training: &Training) -> f64 {
-    match training.settings.zero {
-        FlapZero::AsRecorded => 0.0,
-        FlapZero::MajorLoopMean => major_loop_mean(&training.slow),
-    }
-}
-
 /// Mean over the steady cycles of the periodic quasi-static record with the largest amplitude; over
 /// all of the widest record if none is periodic.
-fn major_loop_mean(slow: &[&Prepared]) -> f64 {
+pub(crate) fn major_loop_mean(slow: &[&Prepared]) -> f64 {
     let by_amplitude =
         |a: &&&Prepared, b: &&&Prepared| a.drive.amplitude_volt.total_cmp(&b.drive.amplitude_volt);
     let periodic = slow.iter().filter(|r| r.cycles.is_some()).max_by(by_amplitude);

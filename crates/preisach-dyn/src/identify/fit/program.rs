@@ -15,6 +15,29 @@ const ALMOST_GAP: f64 = 1e-6;
 /// A sparse row: unknown and coefficient.
 pub(crate) type Row = Vec<(usize, f64)>;
 
+/// Ranges of the targets that their middle may be from zero before it counts as an offset.
+const SMALL_OFFSET: f64 = 2.0;
+
+/// The offset of targets between two extremes that is taken off before a fit and given back to its
+/// constant: their middle, if it is far from zero.
+///
+/// The solver ends at a tolerance relative to what is squared: of a displacement read from a metre away it
+/// would leave most of the motion unexplained. Targets near zero stay as they are.
+pub(crate) fn offset([low, high]: [f64; 2]) -> f64 {
+    let middle = 0.5 * (low + high);
+    let is_far = middle.abs() > SMALL_OFFSET * (high - low);
+    if is_far && middle.is_finite() { middle } else { 0.0 }
+}
+
+/// Spreads of targets that the unknowns of a static map are in one unit with.
+const USUAL_SPREADS: std::ops::RangeInclusive<f64> = 1e-2..=1e2;
+
+/// The unit that targets of a spread are counted in, so that the unknowns are of order one: the solver's
+/// tolerance holds for their size too.
+pub(crate) fn unit(spread: f64) -> f64 {
+    if USUAL_SPREADS.contains(&spread) { 1.0 } else { spread }
+}
+
 /// `min sum_i w_i (a_i x - b_i)^2` subject to `c_k x >= d_k` and `e_k x = 0`.
 #[derive(Debug, Clone)]
 pub(crate) struct LeastSquaresProgram {
@@ -63,6 +86,13 @@ impl LeastSquaresProgram {
     /// Numbers kept: the normal equations.
     pub(crate) fn kept_numbers(&self) -> usize {
         self.normal.len() + self.right.len()
+    }
+
+    /// Counts all targets added so far in a unit.
+    pub(crate) fn count_targets_in(&mut self, unit: f64) {
+        for value in &mut self.right {
+            *value /= unit;
+        }
     }
 
     /// Multiplies the weights of all rows added so far.
@@ -179,6 +209,19 @@ fn from_columns(rows: usize, columns: Vec<Row>) -> CscMatrix {
 mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
+
+    #[test]
+    fn an_offset_is_the_middle_of_targets_far_from_zero() {
+        for (low, high, expected) in [
+            (-20.0, 480.0, 0.0),
+            (0.0, 500.0, 0.0),
+            (100_000.0, 100_500.0, 100_250.0),
+            (-3.25, -3.0, -3.125),
+            (f64::INFINITY, f64::NEG_INFINITY, 0.0),
+        ] {
+            assert_abs_diff_eq!(offset([low, high]), expected, epsilon = 1e-12);
+        }
+    }
 
     /// A line through three points, `x0 + x1 t`.
     fn line() -> LeastSquaresProgram {

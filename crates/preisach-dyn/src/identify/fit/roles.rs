@@ -1,13 +1,14 @@
 //! Which record trains what, and what the set of records cannot tell.
 
 use crate::check::extremes;
-use crate::identify::fit::static_fit;
+use crate::identify::fit::preisach::major_loop_mean;
 use crate::identify::fit::training::Training;
+use crate::identify::fit::{program, static_fit};
 use crate::identify::records::findings::{Finding, Identifiability};
 use crate::identify::records::prepared::Prepared;
 use crate::identify::records::{plausibility, spikes};
-use crate::identify::{BenchRecord, Drive, RecordUse, Settings, Waveform};
-use crate::{PreisachError, PreisachGrid};
+use crate::identify::{BenchRecord, Drive, FlapZero, RecordUse, Settings, Waveform};
+use crate::{ActuatorModel, PreisachError, PreisachGrid};
 use rayon::prelude::*;
 use std::borrow::Cow;
 
@@ -20,8 +21,10 @@ const SAME_AMPLITUDE: f64 = 0.05;
 
 /// Checked records with their commands and uses.
 pub(crate) struct Bench<'a> {
-    /// Spikes left out.
+    /// Spikes left out, the offset taken off.
     records: Vec<Cow<'a, BenchRecord>>,
+    /// Offset of the outputs that was taken off all records, deg.
+    offset_deg: f64,
     drives: Vec<Drive>,
     uses: Vec<RecordUse>,
     /// Whether a record trains the static map.
@@ -51,7 +54,7 @@ impl<'a> Bench<'a> {
             None => Cow::Borrowed(record),
         });
         let given = records;
-        let records: Vec<Cow<BenchRecord>> = kept.collect();
+        let mut records: Vec<Cow<BenchRecord>> = kept.collect();
         let drives: Vec<Drive> = records.iter().map(|record| record.drive()).collect();
         let mut uses = settings.split.uses(given, &drives);
         let moves = |i: usize| drives[i].waveform != Waveform::Constant;
@@ -89,7 +92,37 @@ impl<'a> Bench<'a> {
         for i in all {
             findings.extend(plausibility::suspicions(&records[i], &drives[i], quasi_static(i)));
         }
-        Ok(Self { records, drives, uses, slow, findings })
+        let trained = records.iter().zip(&uses).filter(|(_, side)| **side == RecordUse::Train);
+        let trained = trained.flat_map(|(r, _)| &r.output_deg[r.trained_samples()]);
+        let offset_deg = program::offset(extremes(trained.copied()));
+        // far from zero, fits would lose the digits of the motion
+        if offset_deg.abs() > 0.0 {
+            for output in records.iter_mut().flat_map(|r| &mut r.to_mut().output_deg) {
+                *output -= offset_deg;
+            }
+        }
+        Ok(Self { records, offset_deg, drives, uses, slow, findings })
+    }
+
+    /// Output of the records as given that is zero flap angle, deg.
+    pub(crate) fn zero_deg(&self, training: &Training) -> f64 {
+        self.offset_deg + self.fitted_zero_deg(training)
+    }
+
+    /// The same of the records as fitted.
+    fn fitted_zero_deg(&self, training: &Training) -> f64 {
+        match training.settings.zero {
+            FlapZero::AsRecorded => -self.offset_deg,
+            FlapZero::MajorLoopMean => major_loop_mean(&training.slow),
+        }
+    }
+
+    /// A model of the records as fitted with its flap angle at zero where it is to be, its displacement
+    /// that of the records as given.
+    pub(crate) fn rigged(&self, model: ActuatorModel, training: &Training) -> ActuatorModel {
+        let mut model = model.shifted(-self.fitted_zero_deg(training));
+        model.calibration.zero_um += self.offset_deg / model.calibration.deg_per_um;
+        model
     }
 
     /// The use of every record.

@@ -1,6 +1,6 @@
 //! The static map `G0` from quasi-static records, by constrained least squares.
 
-use crate::identify::fit::program::{LeastSquaresProgram, Row};
+use crate::identify::fit::program::{LeastSquaresProgram, Row, unit};
 use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
 use crate::identify::records::record::spread;
@@ -32,9 +32,7 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
             program.aim(&row, targets[index], weight);
         }
     }
-    program.scale(1.0 / (spread * spread));
-    unknowns.regularise(grid, settings.static_smoothness / (spread * spread), &mut program);
-    Ok(unknowns.map(grid, &program.solve("static map")?))
+    unknowns.solved(grid, program, settings.static_smoothness, spread * spread)
 }
 
 /// The samples of the slow records, the weights of all together 1, without targets.
@@ -134,19 +132,29 @@ pub(crate) struct Unknowns {
 }
 
 impl Unknowns {
-    /// Adds smoothness of weight `penalty` per cell, and the bounds of the density.
-    pub(crate) fn regularise(
+    /// The map that a program of samples leads to, whose weights sum to one: with smoothness per cell
+    /// and the bounds of the density. `variance` is that of the targets.
+    pub(crate) fn solved(
         &self,
         grid: &PreisachGrid,
-        penalty: f64,
-        program: &mut LeastSquaresProgram,
-    ) {
-        let penalty = penalty * (self.count - 1) as f64;
-        smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), program);
+        mut program: LeastSquaresProgram,
+        smoothness: f64,
+        variance: f64,
+    ) -> Result<PlayMap, PreisachError> {
+        let unit = unit(variance.sqrt());
+        program.count_targets_in(unit);
+        program.scale(unit * unit / variance);
+        let penalty = unit * unit * smoothness / variance * (self.count - 1) as f64;
+        smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), &mut program);
+        let mut solution = program.solve("static map")?;
+        for value in &mut solution {
+            *value *= unit;
+        }
+        Ok(self.map(grid, &solution))
     }
 
     /// The map of a solution.
-    pub(crate) fn map(&self, grid: &PreisachGrid, solution: &[f64]) -> PlayMap {
+    fn map(&self, grid: &PreisachGrid, solution: &[f64]) -> PlayMap {
         let nodes = (0..grid.levels())
             .map(|j| {
                 // the solver meets the bounds to its tolerance only: no density below zero is kept

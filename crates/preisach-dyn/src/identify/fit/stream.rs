@@ -28,7 +28,7 @@ pub struct StaticAccumulator {
     row: Row,
     seen: usize,
     used: usize,
-    /// Sum and sum of squares of the outputs used, about the first one.
+    /// Sum and sum of squares of the outputs used, about the first one, as the equations have them.
     sums: [f64; 2],
     first_deg: f64,
 }
@@ -87,8 +87,8 @@ impl StaticAccumulator {
                     self.first_deg = y;
                 }
                 self.unknowns.hats(memory.cells(), &mut self.row);
-                self.program.add(&self.row, y, 1.0);
                 let off = y - self.first_deg;
+                self.program.add(&self.row, off, 1.0);
                 self.sums[0] += off;
                 self.sums[1] += off * off;
                 self.used += 1;
@@ -121,9 +121,9 @@ impl StaticAccumulator {
         let variance = self.sums[1] / count - mean * mean;
         check_positive("variance of the outputs, deg^2", variance)?;
         let mut program = self.program.clone();
-        program.scale(1.0 / (count * variance));
-        self.unknowns.regularise(&self.grid, self.smoothness / variance, &mut program);
-        let map = self.unknowns.map(&self.grid, &program.solve("static map")?);
+        program.scale(1.0 / count);
+        let mut map = self.unknowns.solved(&self.grid, program, self.smoothness, variance)?;
+        map.constant += self.first_deg;
         StaticPreisach::new(self.grid, map)
     }
 }

@@ -45,9 +45,11 @@ pub struct Drive {
 const SINGLE_SHARE: f64 = 0.95;
 
 impl BenchRecord {
-    /// What the command does.
+    /// What the command does in the windows of the record; over all of it without any.
     pub fn drive(&self) -> Drive {
-        let u = &self.voltage_volt;
+        let (trained, judged) = (self.trained_samples(), self.judged_samples());
+        let window = trained.start.min(judged.start)..trained.end.max(judged.end);
+        let u = &self.voltage_volt[window.clone()];
         let [low, high] = extremes(u.iter().copied());
         let mut drive = Drive {
             waveform: Waveform::Constant,
@@ -63,11 +65,15 @@ impl BenchRecord {
         let given = self.base_frequency_hz.map(|hz| 1.0 / (hz * self.time_step_s));
         let to_the_end = || {
             let period = given.or_else(|| find_period(u, swing))?;
-            Some((period, steady_samples(u, period, drive.amplitude_volt)?))
+            // a window may begin in the midst of cycles: the one before it is then the start-up
+            let before = window.start.min(split(period).0 + 1);
+            let wider = &self.voltage_volt[window.start - before..window.end];
+            let steady = steady_samples(wider, period, drive.amplitude_volt)?;
+            Some((period, steady.start.max(before) - before..steady.end - before))
         };
         if let Some((samples, steady)) = to_the_end().or_else(|| inner_stretch(u, given, swing)) {
             drive.base_hz = 1.0 / (samples * self.time_step_s);
-            drive.steady = steady;
+            drive.steady = window.start + steady.start..window.start + steady.end;
             drive.find_harmonics(self);
         } else {
             let changes = || u.windows(2).map(|pair| (pair[1] - pair[0]).abs());
@@ -177,6 +183,26 @@ mod tests {
         assert!((drive.amplitude_volt - 40.0).abs() < 0.1);
         // 0.75 s hold 11 periods; the first is left out
         assert_eq!(drive.steady, 2001 - 1333..2001);
+    }
+
+    /// Two runs in one file, a rest between them: each window has its own frequency and amplitude.
+    #[test]
+    fn a_window_has_the_drive_of_its_samples() {
+        let mut record = record(1e-3, 10.0, |t| match t {
+            t if t < 4.0 => 65.0 + 60.0 * (TAU * t).sin(),
+            t if t < 6.0 => 65.0,
+            t => 65.0 + 20.0 * (TAU * 5.0 * (t - 6.0)).sin(),
+        });
+        for (window, hz, amplitude) in [(0..4000, 1.0, 60.0), (6000..10_000, 5.0, 20.0)] {
+            record.windows.train = Some(window.clone());
+            record.windows.judge = Some(window.clone());
+            let drive = record.drive();
+            assert_eq!(drive.waveform, Waveform::SingleHarmonic, "{drive:?}");
+            assert!((drive.base_hz / hz - 1.0).abs() < 1e-3, "{drive:?}");
+            assert!((drive.amplitude_volt - amplitude).abs() < 0.1, "{drive:?}");
+            assert!(window.start <= drive.steady.start && drive.steady.end <= window.end);
+            assert!(drive.steady_within(&window, 1e-3).is_some());
+        }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! What the records cannot tell: the summary of identifiability.
 
+use crate::identify::BenchRecord;
+use crate::identify::records::noise::RestNoise;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -21,6 +23,15 @@ pub enum Channel {
     Command,
     /// The output, deg.
     Output,
+}
+
+impl Channel {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Command => "command",
+            Self::Output => "output",
+        }
+    }
 }
 
 /// One thing the records cannot tell, or that is wrong with them.
@@ -61,10 +72,19 @@ pub enum Finding {
         /// The amplitude, V.
         amplitude_volt: f64,
     },
-    /// The command of a record never changes: the record tells nothing but its noise.
+    /// The command of a record never changes: the record tells noise, drift and hum, and nothing for a model.
     ConstantCommand {
         /// The record.
         id: String,
+        /// What it says of the output.
+        noise: RestNoise,
+    },
+    /// The output falls where the command rises: the sensor may be inverted.
+    OutputFalls {
+        /// The record.
+        id: String,
+        /// Slope of the straight line through the record, deg/V.
+        slope: f64,
     },
     /// A channel rests at its extreme: the output while the command moves, or a periodic command. The
     /// sensor or the amplifier was at its limit.
@@ -116,6 +136,13 @@ pub enum Finding {
 }
 
 impl Finding {
+    /// What a record whose command never changes tells.
+    pub fn of_rest(record: &BenchRecord) -> Self {
+        let output = &record.output_deg[record.judged_samples()];
+        let noise = RestNoise::of(output, record.time_step_s);
+        Self::ConstantCommand { id: record.id.clone(), noise }
+    }
+
     /// What it means for the model.
     pub fn severity(&self) -> Severity {
         self.said(ACTUATOR_UNITS).0
@@ -172,10 +199,18 @@ impl Finding {
                 format!("the rate records all have an amplitude of {amplitude_volt:.1} {input}"),
                 "record the trained frequencies at two or more amplitudes: one hides large errors at others",
             ),
-            Self::ConstantCommand { id } => (
+            Self::ConstantCommand { id, noise } => (
                 Severity::Remark,
-                format!("record {id}: the command never changes"),
-                "leave it out, or use it for the noise alone",
+                format!("record {id} is at rest: {}", noise.words(output)),
+                "it serves for noise, drift and hum; no model is fitted to it or judged by it",
+            ),
+            Self::OutputFalls { id, slope } => (
+                Severity::Suspect,
+                format!(
+                    "record {id}: the output falls as the command rises, by {:.4} {output}/{input}",
+                    slope.abs()
+                ),
+                "check the sign of the output: of an inverted sensor import it with --scale NAME=-1",
             ),
             Self::Clipped { id, channel: Channel::Output, level, share_percent } => (
                 Severity::Suspect,
@@ -191,19 +226,18 @@ impl Finding {
                 ),
                 "record the voltage at the actuator's terminals, or keep the amplifier off its limit",
             ),
-            Self::Spikes { id, channel, samples, index, time_s, value } => {
-                let (name, value) = match channel {
-                    Channel::Output => ("output", format!("{value:.4} {output}")),
-                    Channel::Command => ("command", format!("{value:.2} {input}")),
-                };
-                (
-                    Severity::Remark,
-                    format!(
-                        "record {id}: {samples} samples of the {name} are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {value}"
-                    ),
-                    "look at the samples; check contacts and the recorder",
-                )
-            }
+            Self::Spikes { id, channel, samples, index, time_s, value } => (
+                Severity::Remark,
+                format!(
+                    "record {id}: {samples} samples of the {} are spikes and were left out, the largest at sample {index}, {time_s:.4} s: {}",
+                    channel.name(),
+                    match channel {
+                        Channel::Output => format!("{value:.4} {output}"),
+                        Channel::Command => format!("{value:.2} {input}"),
+                    }
+                ),
+                "look at the samples; check contacts and the recorder",
+            ),
             Self::OutputLeads { id, lead_deg } => (
                 Severity::Suspect,
                 format!(

@@ -4,6 +4,7 @@ pub(crate) mod drive;
 pub(crate) mod findings;
 pub(crate) mod flat_top;
 pub(crate) mod fourier;
+pub(crate) mod glance;
 pub(crate) mod noise;
 pub(crate) mod plausibility;
 pub(crate) mod prepared;

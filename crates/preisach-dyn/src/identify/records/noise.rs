@@ -2,7 +2,9 @@
 
 use crate::check::extremes;
 use crate::laws::play_map::split;
+use rotor_base::{mean_square, significant};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// What the repeated cycles of a record say about its noise.
 ///
@@ -60,6 +62,75 @@ impl CycleNoise {
     }
 }
 
+/// What a record at rest says of its output.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct RestNoise {
+    /// Standard deviation about a straight line, hum taken off, deg.
+    pub std_deg: f64,
+    /// Slope of that line, deg/min.
+    pub drift_deg_per_min: f64,
+    /// Amplitude of the hum of the mains, deg; 0 where none stands out.
+    pub hum_deg: f64,
+    /// Its frequency, Hz: 50 or 60.
+    pub hum_hz: f64,
+}
+
+/// Frequencies of mains, Hz.
+const MAINS_HZ: [f64; 2] = [50.0, 60.0];
+/// Periods of the mains that a record holds at least for hum to be looked for.
+const LEAST_PERIODS: f64 = 5.0;
+/// How far a hum stands out from what noise puts at its frequency, in standard deviations.
+const HUM_SIGMAS: f64 = 5.0;
+
+impl RestNoise {
+    /// The noise of the output of a record at rest.
+    pub(crate) fn of(output_deg: &[f64], time_step_s: f64) -> Self {
+        let count = output_deg.len() as f64;
+        let middle = 0.5 * (count - 1.0);
+        let mean = output_deg.iter().sum::<f64>() / count;
+        let along: f64 =
+            output_deg.iter().enumerate().map(|(i, y)| (i as f64 - middle) * (y - mean)).sum();
+        let slope = along / (count * (count * count - 1.0) / 12.0).max(f64::MIN_POSITIVE);
+        let left = |(i, y): (usize, &f64)| y - mean - slope * (i as f64 - middle);
+        let left: Vec<f64> = output_deg.iter().enumerate().map(left).collect();
+        let variance = mean_square(&left);
+        let hums = MAINS_HZ.map(|hz| {
+            let (per_sample, periods) = (hz * time_step_s, hz * time_step_s * count);
+            if per_sample > 0.4 || periods < LEAST_PERIODS {
+                return (0.0, hz);
+            }
+            let (mut sine, mut cosine) = (0.0, 0.0);
+            for (i, y) in left.iter().enumerate() {
+                let (s, c) = (TAU * (per_sample * i as f64).fract()).sin_cos();
+                sine += s * y;
+                cosine += c * y;
+            }
+            (2.0 * sine.hypot(cosine) / count, hz)
+        });
+        let (size, hum_hz) = if hums[1].0 > hums[0].0 { hums[1] } else { hums[0] };
+        let rest = (variance - 0.5 * size * size).max(0.0);
+        // white noise has an amplitude of sqrt(2 / n) times its deviation at any one frequency, in either phase
+        let stands_out = size > HUM_SIGMAS * (2.0 * rest / count).sqrt() && size > 0.0;
+        Self {
+            std_deg: if stands_out { rest.sqrt() } else { variance.sqrt() },
+            drift_deg_per_min: slope / time_step_s * 60.0,
+            hum_deg: if stands_out { size } else { 0.0 },
+            hum_hz,
+        }
+    }
+}
+
+impl RestNoise {
+    /// It in words, with the symbol of the unit of the output.
+    pub(crate) fn words(&self, output: &str) -> String {
+        let Self { std_deg, drift_deg_per_min, hum_deg, hum_hz } = *self;
+        let [noise, drift, hum] =
+            [std_deg, drift_deg_per_min, hum_deg].map(|value| significant(value, 3));
+        let words = format!("noise {noise} {output} rms, drift {drift} {output}/min");
+        if hum > 0.0 { format!("{words}, hum {hum} {output} at {hum_hz} Hz") } else { words }
+    }
+}
+
 /// The fine grain of a signal: its white noise and the step it is rounded to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Fine {
@@ -108,6 +179,24 @@ mod tests {
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, Normal};
+
+    #[test]
+    fn a_rest_tells_noise_drift_and_hum() {
+        let mut rng = ChaCha8Rng::seed_from_u64(3);
+        let normal = Normal::new(0.0, 0.02).unwrap();
+        let mut rest = |hum: f64| -> RestNoise {
+            let sample = |i: u32| {
+                let time = 1e-3 * f64::from(i);
+                400.0 + 0.01 * time + hum * (TAU * 60.0 * time).sin() + normal.sample(&mut rng)
+            };
+            RestNoise::of(&(0..20_000).map(sample).collect::<Vec<f64>>(), 1e-3)
+        };
+        let found = rest(0.01);
+        assert!((found.std_deg / 0.02 - 1.0).abs() < 0.03, "{found:?}");
+        assert!((found.drift_deg_per_min - 0.6).abs() < 0.02, "{found:?}");
+        assert!((found.hum_deg - 0.01).abs() < 1e-3 && (found.hum_hz - 60.0).abs() < 1e-9);
+        assert!(rest(0.0).hum_deg <= 0.0);
+    }
 
     #[test]
     fn white_noise_on_drifting_cycles_is_found_whatever_the_period() {

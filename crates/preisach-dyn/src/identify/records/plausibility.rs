@@ -19,6 +19,8 @@ const MOVES: f64 = 0.02;
 const FLAT_SHARE: f64 = 0.02;
 /// Lead of the output that cannot be noise, deg of harmonic phase.
 const LEAD_DEG: f64 = 1.0;
+/// Share of the spread of the output that a falling line explains where the output falls with the command.
+const FALLS: f64 = 0.5;
 /// Width of a slow loop over the range of the output that no ceramic has.
 const TOO_WIDE: f64 = 0.6;
 
@@ -73,13 +75,42 @@ pub(crate) fn check_units(
     Ok(())
 }
 
+/// The straight line through a record's judged samples.
+pub(crate) struct Line {
+    /// Its slope, deg/V.
+    pub(crate) slope: f64,
+    /// Share of the variance of the output that it explains.
+    explained: f64,
+}
+
+impl Line {
+    /// The line through a record.
+    pub(crate) fn of(record: &BenchRecord) -> Self {
+        let samples = record.judged_samples();
+        let (u, y) = (&record.voltage_volt[samples.clone()], &record.output_deg[samples]);
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
+        let (u0, y0) = (mean(u), mean(y));
+        let (mut uu, mut uy, mut yy) = (0.0, 0.0, 0.0);
+        for (u, y) in u.iter().zip(y) {
+            uu += (u - u0) * (u - u0);
+            uy += (u - u0) * (y - y0);
+            yy += (y - y0) * (y - y0);
+        }
+        Self { slope: uy / uu, explained: uy * uy / (uu * yy) }
+    }
+}
+
 /// What is suspect about one record.
 pub(crate) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> Vec<Finding> {
     let id = || record.id.clone();
     if drive.waveform == Waveform::Constant {
-        return vec![Finding::ConstantCommand { id: id() }];
+        return vec![Finding::of_rest(record)];
     }
     let mut findings = Vec::new();
+    let line = Line::of(record);
+    if line.slope < 0.0 && line.explained > FALLS {
+        findings.push(Finding::OutputFalls { id: id(), slope: line.slope });
+    }
     let clipped = |channel: Channel, (level, share): (f64, f64)| {
         let share_percent = 100.0 * share;
         Finding::Clipped { id: id(), channel, level, share_percent }

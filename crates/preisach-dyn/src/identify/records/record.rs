@@ -1,7 +1,7 @@
 //! Bench records.
 
 use crate::actuator::model::SAMPLE_TOLERANCE;
-use crate::check::{check_count, check_positive, not_finite};
+use crate::check::{check_count, check_positive, extremes, not_finite};
 use crate::{PreisachError, VoltageRange};
 use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
@@ -76,6 +76,12 @@ impl BenchRecord {
             }
         }
         Ok(())
+    }
+
+    /// Whether the command never changes where the record is judged.
+    pub fn is_at_rest(&self) -> bool {
+        let [low, high] = extremes(self.voltage_volt[self.judged_samples()].iter().copied());
+        low >= high
     }
 
     /// The samples that train.

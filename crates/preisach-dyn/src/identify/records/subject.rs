@@ -12,6 +12,8 @@ pub enum Subject<'a> {
     /// An actuator: V and deg of equivalent flap angle.
     #[default]
     Actuator,
+    /// An actuator whose gain is not known yet: V and um.
+    Displacement,
     /// A loop of any input and output.
     Loop {
         /// Symbol of the unit of the input.
@@ -26,6 +28,7 @@ impl<'a> Subject<'a> {
     pub fn units(self) -> [&'a str; 2] {
         match self {
             Self::Actuator => ACTUATOR_UNITS,
+            Self::Displacement => ["V", "um"],
             Self::Loop { input_unit, output_unit } => [input_unit, output_unit],
         }
     }

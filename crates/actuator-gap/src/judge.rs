@@ -1,47 +1,51 @@
 //! How well a model fits the records, judged by `model-gap` from simulated outputs: the identification
 //! does not mark its own work.
 
-use super::{DataHeading, dataset_place};
-use crate::SimError;
-use crate::files::limits;
-use crate::stored_actuator::StoredFit;
-use actuator_gap::DiagnosisError;
-use model_gap::{EnergySplit, FirstHarmonicError, GapError, Misfit, noise_variance};
+use crate::{DiagnosisError, StoredFit};
+use measured_data::limits;
+use model_gap::{EnergySplit, FirstHarmonicError, Misfit, noise_variance};
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{BenchRecord, Identification, RecordReport};
 use rayon::prelude::*;
 
+/// A record whose fit cannot be judged.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("record {id}: {source}")]
+pub struct NotJudged {
+    /// The record.
+    pub id: String,
+    /// Why.
+    pub source: DiagnosisError,
+}
+
 /// A model against every record, and the static model of the same identification beside it.
 ///
 /// # Errors
-/// [`SimError::Actuator`], [`SimError::Loop`] or [`SimError::Diagnosis`] at the place of the data set.
-pub(super) fn judged(
-    heading: &DataHeading,
+/// [`NotJudged`] if a model cannot follow a record, or nothing in it moves.
+pub fn judged(
     records: &[BenchRecord],
     identification: &Identification,
     model: &ActuatorModel,
-) -> Result<Vec<StoredFit>, SimError> {
+) -> Result<Vec<StoredFit>, NotJudged> {
     records
         .par_iter()
         .zip(&identification.records)
-        .map(|(record, report)| judge(heading, record, report, identification, model))
+        .map(|(record, report)| {
+            judge(record, report, identification, model)
+                .map_err(|source| NotJudged { id: record.id.clone(), source })
+        })
         .collect()
 }
 
 fn judge(
-    heading: &DataHeading,
     record: &BenchRecord,
     report: &RecordReport,
     identification: &Identification,
     model: &ActuatorModel,
-) -> Result<StoredFit, SimError> {
-    let failed = |source: GapError| {
-        let place = dataset_place(&heading.folder).field(&record.id);
-        SimError::Diagnosis { place, source: DiagnosisError::from(source) }
-    };
+) -> Result<StoredFit, DiagnosisError> {
     let simulate = |model: &ActuatorModel| {
         let run = model.simulate(&record.voltage_volt, record.time_step_s);
-        run.map(|simulation| simulation.output_deg).map_err(|e| heading.failed(e))
+        run.map(|simulation| simulation.output_deg)
     };
     let measured: Vec<f64> =
         record.output_deg.iter().map(|y| y - identification.zero_deg).collect();
@@ -57,7 +61,9 @@ fn judge(
         .clone()
         .map(|steady| {
             let (y, model) = (&measured[steady.clone()], &simulated[steady]);
-            FirstHarmonicError::of(y, model, step_s, drive.strongest_hz()).map_err(failed)
+            // a period found from samples is a little off: a sample short is a whole cycle still
+            let hz = drive.strongest_hz().max(1.0 / (y.len() as f64 * step_s));
+            FirstHarmonicError::of(y, model, step_s, hz)
         })
         .transpose()?;
     // a record without repeats tells no noise
@@ -65,9 +71,8 @@ fn judge(
         steady.and_then(|steady| noise_variance(&measured[steady], step_s, drive.base_hz).ok());
     let structured = noise
         .map(|noise| EnergySplit::of(judged, &simulated[window.clone()], noise))
-        .transpose()
-        .map_err(failed)?;
-    let misfit = Misfit::of(judged, &simulated[window.clone()]).map_err(failed)?;
+        .transpose()?;
+    let misfit = Misfit::of(judged, &simulated[window.clone()])?;
     let (low, high) = limits(judged);
     let of_range = 100.0 / (high - low);
     let start_up = start_up(&measured[..window.start], &simulated, misfit.bias);
@@ -82,8 +87,7 @@ fn judge(
         offset: Some(misfit.bias),
         start_up_percent: start_up.map(|[largest, _]| largest * of_range),
         start_up_rms_percent: start_up.map(|[_, rms]| rms * of_range),
-        static_nrmse_percent: 100.0
-            * Misfit::of(judged, &quasi_static[window]).map_err(failed)?.nrmse,
+        static_nrmse_percent: 100.0 * Misfit::of(judged, &quasi_static[window])?.nrmse,
         amplitude_error_percent: first.as_ref().map(|f| 100.0 * (f.amplitude_ratio - 1.0)),
         phase_error_deg: first.map(|f| f.phase_error_deg),
         structured_percent: structured.map(|split| 100.0 * split.structured),

@@ -1,0 +1,134 @@
+//! Results do not depend on where the zero of a sensor is, nor on the unit of the output.
+#![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+
+use crate::common::Wavy;
+use preisach_dyn::forc::{self, ForcCurve, ForcData, ForcSettings};
+use preisach_dyn::identify::{
+    BenchRecord, Candidates, Family, FlapZero, Settings, StaticAccumulator, compare_models,
+    identify,
+};
+use preisach_dyn::{HysteresisLaw, PreisachGrid, StartState, StaticPreisach, VoltageRange};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, Normal};
+use std::f64::consts::TAU;
+
+const DEG_PER_UM: f64 = 0.04;
+/// Offset of a sensor that stands away from what it reads, um.
+const AWAY_UM: f64 = 1e5;
+
+/// Slow loops of several amplitudes through a Preisach density, with noise, behind a sensor: um.
+fn bench(offset_um: f64, scale: f64) -> Vec<BenchRecord> {
+    let (grid, map) = Wavy::WIDE.map(24);
+    let truth = StaticPreisach::new(grid, map).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let noise = Normal::new(0.0, 0.02).unwrap();
+    let record = |amplitude: f64| {
+        let volt = |i: u32| 65.0 + amplitude * (TAU * 0.2 * 0.01 * f64::from(i)).sin();
+        let voltage_volt: Vec<f64> = (0..1500).map(volt).collect();
+        let (mut memory, _) = truth.start(voltage_volt[0], StartState::Rest);
+        let step = |u: &f64| {
+            let deg = truth.step(&mut memory, *u, 0.01) + noise.sample(&mut rng);
+            scale * DEG_PER_UM * (deg / DEG_PER_UM + offset_um)
+        };
+        let output_deg = voltage_volt.iter().map(step).collect();
+        let id = format!("{amplitude} V");
+        BenchRecord { id, time_step_s: 0.01, voltage_volt, output_deg, ..BenchRecord::default() }
+    };
+    [85.0, 60.0, 35.0, 15.0].map(record).into()
+}
+
+fn settings(zero: FlapZero) -> Settings {
+    Settings {
+        range_volt: VoltageRange::new(-30.0, 160.0).unwrap(),
+        deg_per_um: DEG_PER_UM,
+        levels: 12,
+        zero,
+        ..Settings::default()
+    }
+}
+
+/// NRMSE of the records by every family, and the displacement the static model gives for the first
+/// record, um from that of the record.
+fn found(offset_um: f64, scale: f64, zero: FlapZero) -> (Vec<f64>, f64) {
+    let records = bench(offset_um, scale);
+    let settings = Settings { deg_per_um: scale * DEG_PER_UM, ..settings(zero) };
+    let single = identify(&records, &settings).unwrap();
+    let families = [Family::BoucWen, Family::PrandtlStop, Family::StaticPreisach];
+    let candidates = Candidates { families: families.to_vec(), orders: vec![] };
+    let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+    let mut errors: Vec<f64> = single.records.iter().map(|r| r.static_only.nrmse).collect();
+    let fitted = table.rows.iter().filter_map(|row| row.fitted.as_ref().ok());
+    errors.extend(fitted.flat_map(|fitted| fitted.fits.iter().map(|fit| fit.nrmse)));
+    let model = &single.static_only;
+    let first = &records[0];
+    let ours = model.simulate(&first.voltage_volt, first.time_step_s).unwrap().output_deg;
+    let pairs = || ours.iter().zip(&first.output_deg);
+    let zero_missed = pairs().map(|(a, b)| (a + single.zero_deg - b).abs()).fold(0.0, f64::max);
+    let um = |deg: f64| deg / model.calibration.deg_per_um + model.calibration.zero_um;
+    let missed = pairs().map(|(a, b)| (um(*a) - b / settings.deg_per_um).abs()).fold(0.0, f64::max);
+    assert!((zero_missed / settings.deg_per_um - missed).abs() < 1e-6 * (1.0 + AWAY_UM * 1e-3));
+    (errors, missed)
+}
+
+#[test]
+fn models_do_not_depend_on_offset_and_unit() {
+    for zero in [FlapZero::MajorLoopMean, FlapZero::AsRecorded] {
+        let (near, missed_near) = found(0.0, 1.0, zero);
+        assert!(near.len() >= 12 && near[0] < 0.02, "{near:?}");
+        for (offset_um, scale) in
+            [(AWAY_UM, 1.0), (-AWAY_UM, 1.0), (3e4, 1.0), (AWAY_UM, 1e-3), (AWAY_UM, 1e3)]
+        {
+            let (away, missed) = found(offset_um, scale, zero);
+            assert_eq!(near.len(), away.len(), "{offset_um} {scale}");
+            for (a, b) in near.iter().zip(&away) {
+                assert!((a - b).abs() < 1e-3 * a, "{offset_um} {scale}: {a} {b}");
+            }
+            assert!((missed - missed_near).abs() < 0.02, "{offset_um} {scale}: {missed}");
+        }
+    }
+}
+
+#[test]
+fn streams_do_not_depend_on_offset_and_unit() {
+    let rms_deg = |offset_um: f64, scale: f64| {
+        let records = bench(offset_um, scale);
+        let mut stream = StaticAccumulator::new(&settings(FlapZero::AsRecorded), 1).unwrap();
+        for record in &records {
+            stream.begin_record();
+            stream.push(&record.voltage_volt, &record.output_deg).unwrap();
+        }
+        let law = stream.fit().unwrap();
+        let (mut memory, _) = law.start(records[0].voltage_volt[0], StartState::Rest);
+        let samples = records[0].voltage_volt.iter().zip(&records[0].output_deg);
+        let squares: f64 =
+            samples.map(|(u, y)| (law.step(&mut memory, *u, 0.01) - y).powi(2)).sum();
+        (squares / records[0].output_deg.len() as f64).sqrt() / scale
+    };
+    let near = rms_deg(0.0, 1.0);
+    for (offset_um, scale) in [(AWAY_UM, 1.0), (0.0, 1e-3), (0.0, 1e3), (AWAY_UM, 1e3)] {
+        let away = rms_deg(offset_um, scale);
+        assert!(near < 0.1 && (near - away).abs() < 1e-3 * near, "{near} {away}");
+    }
+}
+
+#[test]
+fn reversal_curves_do_not_depend_on_the_offset() {
+    let (grid, map): (PreisachGrid, _) = Wavy::WIDE.map(12);
+    let truth = StaticPreisach::new(grid, map).unwrap();
+    let worst = |offset: f64| {
+        let curve = |k: u32| {
+            let volt = |i: u32| 150.0 - 14.0 * f64::from(k) + 1.4 * f64::from(k * i) / 2.0;
+            let input: Vec<f64> = (0..=20).map(volt).collect();
+            let (mut memory, _) = truth.start(150.0, StartState::FallingFromHighest);
+            let output = input.iter().map(|u| truth.step(&mut memory, *u, 1.0) + offset).collect();
+            ForcCurve { input, output }
+        };
+        let data = ForcData { curves: (1..=12).map(curve).collect(), calibration: vec![] };
+        let settings = ForcSettings { levels: 12, ..ForcSettings::default() };
+        let fitted = forc::fit(&data, &settings).unwrap();
+        fitted.curves.iter().map(|c| c.rms_percent).fold(0.0, f64::max)
+    };
+    let (near, away) = (worst(0.0), worst(AWAY_UM));
+    assert!(near < 2.0 && (near - away).abs() < 1e-2 * near + 1e-6, "{near} {away}");
+}
