@@ -1,0 +1,4 @@
+//! Tests of the rotor against values it did not make.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod crosscheck;
