@@ -85,14 +85,14 @@ impl Held {
 #[derive(Debug, Clone)]
 pub struct Solver<'a> {
     elastic: &'a Elastic,
-    /// Of [`Held::Controls`] and [`Held::Thrust`].
-    kept: [Option<Jacobian>; 2],
+    /// Of [`Held::All`], [`Held::Controls`] and [`Held::Thrust`].
+    kept: [Option<Jacobian>; 3],
 }
 
 impl<'a> Solver<'a> {
     /// A solver that has not worked yet.
     pub fn new(elastic: &'a Elastic) -> Self {
-        Self { elastic, kept: [None, None] }
+        Self { elastic, kept: [None, None, None] }
     }
 
     fn residual(&self, x: &[f64], held: Held, air: (&Flow, &FlapAngles)) -> Vec<f64> {
@@ -133,12 +133,12 @@ impl<'a> Solver<'a> {
             None => self.from_rest(held, air)?,
         };
         let place = match held {
-            Held::All { .. } => None,
-            Held::Controls(_) => Some(0),
-            Held::Thrust(_) => Some(1),
+            Held::All { .. } => 0,
+            Held::Controls(_) => 1,
+            Held::Thrust(_) => 2,
         };
         let of = |x: &[f64]| self.residual(x, held, air);
-        let mut kept = place.and_then(|own| self.kept[own].clone());
+        let mut kept = self.kept[place].clone();
         let mut x = start;
         let mut last = f64::INFINITY;
         for _ in 0..JACOBIANS {
@@ -154,9 +154,8 @@ impl<'a> Solver<'a> {
             if found.is_converged {
                 let (series, controls, lambda_i) = held.split(&found.x, self.elastic.size());
                 let root = self.elastic.evaluate(series, controls, lambda_i, air).root;
-                if let Some(own) = place {
-                    self.kept[own].get_or_insert(jacobian);
-                }
+                // one found anew is nearer to what comes next
+                self.kept[place] = Some(jacobian);
                 let size = self.elastic.size();
                 return Ok(Response { unknowns: found.x, size, held, root, evaluations });
             }
