@@ -1,7 +1,7 @@
 //! Fourier collocation: modal series in, residual series and root loads out.
 
 use super::airload::{Air, Deflected, FlapSection, Section};
-use super::blade::{Airloads, Blade};
+use super::blade::{Airloads, Blade, Couplings};
 use super::fourier::Fourier;
 use super::hub::Root;
 use super::inflow::{Shape, drees};
@@ -184,9 +184,14 @@ impl Elastic {
             let further = flow.further.get(p).map_or(0.0, |row| row[k]);
             let lambda = free + lambda_i * share + further;
             let slope = s.w.slope[p] + cone;
+            let (shorter, nearer) = if self.blade.couplings == Couplings::Third {
+                (s.u[0][p] + s.v.value[p] * s.v.slope[p], s.w.slope[p] * s.v.value[p])
+            } else {
+                (0.0, 0.0)
+            };
             air.push(Air {
-                u_t: x + across + s.v.rate[p] + s.v.slope[p] * along,
-                u_p: lambda + s.w.rate[p] + slope * along,
+                u_t: x + across + s.v.rate[p] + s.v.slope[p] * along + shorter,
+                u_p: lambda + s.w.rate[p] + slope * along + nearer,
                 u_p_rate: s.w.acceleration[p] + s.w.slope_rate[p] * along - slope * across,
                 along,
                 theta: own,

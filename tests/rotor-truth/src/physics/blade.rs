@@ -7,8 +7,10 @@ use serde::{Deserialize, Serialize};
 pub enum Couplings {
     /// Flap, lag and torsion bend apart, without Coriolis and foreshortening.
     Linear,
-    /// Moderate deflections.
+    /// Moderate deflections, to second order.
     Full,
+    /// The same with the terms of third order of an inextensional beam: foreshortening in tension and in the air.
+    Third,
 }
 
 /// Airloads of a section.

@@ -2,6 +2,7 @@
 
 use crate::error::RotorTruthError;
 use nalgebra::{DMatrix, DVector, Dyn, LU};
+use rayon::prelude::*;
 
 /// Step of the differences that give the Jacobian.
 const DIFFERENCE: f64 = 1e-7;
@@ -27,17 +28,16 @@ impl Jacobian {
     /// By forward differences.
     pub fn at(x: &[f64], of: &(impl Fn(&[f64]) -> Vec<f64> + Sync)) -> Self {
         let base = of(x);
-        let mut matrix = DMatrix::zeros(x.len(), x.len());
-        let mut moved = x.to_vec();
-        for j in 0..x.len() {
+        let column = |j: usize| {
+            let mut moved = x.to_vec();
             moved[j] += DIFFERENCE;
-            let column = of(&moved);
-            moved[j] = x[j];
-            for (i, own) in column.iter().enumerate() {
-                matrix[(i, j)] = (own - base[i]) / DIFFERENCE;
-            }
-        }
-        Self(matrix.lu())
+            DVector::from_iterator(
+                x.len(),
+                of(&moved).iter().zip(&base).map(|(own, base)| (own - base) / DIFFERENCE),
+            )
+        };
+        let columns: Vec<DVector<f64>> = (0..x.len()).into_par_iter().map(column).collect();
+        Self(DMatrix::from_columns(&columns).lu())
     }
 
     fn step(&self, residual: &[f64]) -> Result<DVector<f64>, RotorTruthError> {

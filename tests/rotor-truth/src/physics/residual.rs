@@ -5,6 +5,7 @@
 //! lag      int (v_dd - v + 2 u_d - 2 b_p w_d - F_y) L + N v' L' + M_v L''                            M_v = EI_z k_z cos th - EI_y k_y sin th
 //! torsion  int (k_m^2 th_dd + (k_2^2 - k_1^2) sin th cos th + (EI_z - EI_y) k_z k_y - M) P + (GJ + k_A^2 (1 - x^2)/2) p' P'
 //! k_z = v'' cos th + w'' sin th,  k_y = w'' cos th - v'' sin th,  N = (1 - x^2)/2 + int_x^1 2 v_d
+//! third order:  N += int_x^1 u - u_dd - w' F_z - v' F_y
 //! ```
 //! Source: Hodges and Dowell, NASA TN D-7818 (1974), in the form of second order for a uniform, inextensional blade.
 
@@ -125,7 +126,7 @@ pub fn equations(
         let one = |p: usize| Offset::new(blade.mass_centre, p, span.x[p], acting[p].theta, s);
         (0..n).map(one).collect()
     };
-    let tension = tension(blade, span, s, &offsets);
+    let tension = tension(blade, span, s, acting, &offsets);
     let mut work = [Work::zeros(n), Work::zeros(n), Work::zeros(n)];
     for p in 0..n {
         station(blade, (p, span.x[p]), (s, tension[p]), &acting[p], &mut work);
@@ -147,10 +148,25 @@ pub fn equations(
 }
 
 /// Tension by station.
-fn tension(blade: &Blade, span: &Span, s: &Snapshot, offsets: &[Offset]) -> Vec<f64> {
+fn tension(
+    blade: &Blade,
+    span: &Span,
+    s: &Snapshot,
+    acting: &[Acting],
+    offsets: &[Offset],
+) -> Vec<f64> {
     let mut out = vec![0.0; span.len()];
-    if blade.couplings == Couplings::Full {
-        let along = |p: usize| offsets.get(p).map_or(0.0, |own| own.force[0]);
+    if blade.couplings != Couplings::Linear {
+        let along = |p: usize| {
+            let offset = offsets.get(p).map_or(0.0, |own| own.force[0]);
+            if blade.couplings == Couplings::Third {
+                let air = &acting[p].air;
+                let drawn = -s.w.slope[p] * air.f_z - s.v.slope[p] * air.f_y;
+                offset + s.u[0][p] - s.u[2][p] + drawn
+            } else {
+                offset
+            }
+        };
         let f: Vec<f64> = (0..span.len()).map(|p| 2.0 * s.v.rate[p] + along(p)).collect();
         span.to_tip(&f, &mut out);
     }
@@ -178,7 +194,7 @@ fn station(
             let theta = acting.theta[0];
             (blade.ei_flap * bend_w, blade.ei_lag * bend_v, 0.0, theta, 0.0)
         }
-        Couplings::Full => {
+        Couplings::Full | Couplings::Third => {
             let k_z = bend_v * cos + bend_w * sin;
             let k_y = bend_w * cos - bend_v * sin;
             (

@@ -44,7 +44,7 @@ pub fn text(blade: &Blade) -> String {
     }
     let [flap, lag, torsion] = blade.modes;
     let couplings = match blade.couplings {
-        Couplings::Full => "Moderate, untwist: Neglected, twist_angle: Elastic",
+        Couplings::Full | Couplings::Third => "Moderate, untwist: Neglected, twist_angle: Elastic",
         Couplings::Linear => "Linear",
     };
     let model = match blade.airloads {

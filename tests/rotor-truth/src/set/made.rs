@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::{case, table};
 use crate::error::RotorTruthError;
 use crate::physics::balance::Resolution;
-use crate::physics::blade::Blade;
+use crate::physics::blade::{Blade, Couplings};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -112,7 +112,7 @@ pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
         return Err(RotorTruthError::Value { what, value: points as f64, expected });
     }
     let layout = Layout::draw(&mut of_layout, points, chosen.needs_drive);
-    let believed = Blade::default();
+    let believed = Blade { couplings: Couplings::Third, ..Blade::default() };
     let mut machine = Machine::believed(believed.clone());
     let base_ratios = if request.base_error {
         with_base_error(&mut machine.blade, &mut stream(request.seed, 2))

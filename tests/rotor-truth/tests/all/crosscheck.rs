@@ -50,3 +50,13 @@ fn reference_cases_are_reproduced() {
         assert!(z4 < 1e-6, "{name}: {z4:e}");
     }
 }
+
+#[test]
+fn more_of_everything_changes_little() {
+    let exact = fixture("S2", "hub_Z4");
+    for (harmonics, azimuths, points) in [(6, 32, 5), (8, 32, 5), (8, 40, 5), (10, 48, 4), (10, 48, 5), (12, 64, 6)] {
+        let resolution = Resolution { harmonics, azimuths, points, segment: 0.2 };
+        let found = hub(Couplings::Full, resolution, 4);
+        println!("S2 {harmonics} {azimuths} {points}: {:.2e}", error(&found, &exact));
+    }
+}
