@@ -165,7 +165,8 @@ impl Section {
         let (u, speed) = (air.u_t, air.u_t.abs());
         let rb2 = 0.5 * rc * b;
         let beta = self.beta_squared(u).sqrt();
-        let kirchhoff = if self.stall.is_some() { 0.25 * (1.0 + attached.sqrt()).powi(2) } else { 1.0 };
+        let kirchhoff =
+            if self.stall.is_some() { 0.25 * (1.0 + attached.sqrt()).powi(2) } else { 1.0 };
         let slope = rc * PI * self.lift_ratio / beta * kirchhoff;
         let sign = if u < 0.0 { -1.0 } else { 1.0 };
         let lift = slope * speed * q;

@@ -218,7 +218,9 @@ impl Elastic {
             (0..azimuths).map(|k| self.at(series, controls, lambda_i, flow, k)).collect();
         let mut acting: Vec<Vec<Acting>> = moments
             .iter()
-            .map(|at| at.theta.iter().map(|own| Acting { theta: *own, ..Acting::default() }).collect())
+            .map(|at| {
+                at.theta.iter().map(|own| Acting { theta: *own, ..Acting::default() }).collect()
+            })
             .collect();
         for p in 0..self.span.len() {
             if p >= self.first {
@@ -235,14 +237,8 @@ impl Elastic {
         let mut residual = vec![0.0; self.size()];
         let mut root = Vec::with_capacity(azimuths);
         for (k, at) in moments.iter().enumerate() {
-            let (values, own) = equations(
-                &self.blade,
-                &self.span,
-                &self.modes,
-                &at.q,
-                &at.snapshot,
-                &acting[k],
-            );
+            let (values, own) =
+                equations(&self.blade, &self.span, &self.modes, &at.q, &at.snapshot, &acting[k]);
             root.push(own);
             for (value, row) in values.iter().zip(residual.chunks_exact_mut(size)) {
                 self.fourier.project(*value, k, row);

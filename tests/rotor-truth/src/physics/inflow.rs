@@ -63,8 +63,15 @@ const CORE: f64 = 0.02;
 ///
 /// The vortex that blade `k` left at age `z` lies at `(cos(psi_k - z) + mu z, sin(psi_k - z), -lambda z)`. Velocity of a segment
 /// with a core after Vatistas (n = 2).
-pub fn helices(span: &Span, fourier: &Fourier, blades: usize, mu: f64, lambda: f64) -> Vec<Vec<f64>> {
-    let count = (1..10_000_u32).find(|n| f64::from(*n) * SEGMENT >= TURNS * TAU - 1e-9).unwrap_or(1);
+pub fn helices(
+    span: &Span,
+    fourier: &Fourier,
+    blades: usize,
+    mu: f64,
+    lambda: f64,
+) -> Vec<Vec<f64>> {
+    let count =
+        (1..10_000_u32).find(|n| f64::from(*n) * SEGMENT >= TURNS * TAU - 1e-9).unwrap_or(1);
     let mut map = vec![vec![0.0; fourier.azimuths]; span.len()];
     for sample in 0..fourier.azimuths {
         let psi = fourier.azimuth(sample);
@@ -100,8 +107,8 @@ fn segment(target: [f64; 3], begin: [f64; 3], end: [f64; 3]) -> f64 {
     let cross =
         [l[1] * r1[2] - l[2] * r1[1], l[2] * r1[0] - l[0] * r1[2], l[0] * r1[1] - l[1] * r1[0]];
     let (square, length) = (dot(cross, cross), dot(l, l));
-    let ends = dot(l, r1) / dot(r1, r1).sqrt().max(1e-12)
-        - dot(l, r2) / dot(r2, r2).sqrt().max(1e-12);
+    let ends =
+        dot(l, r1) / dot(r1, r1).sqrt().max(1e-12) - dot(l, r2) / dot(r2, r2).sqrt().max(1e-12);
     ends * cross[2] / (4.0 * PI * (square * square + CORE.powi(4) * length * length).sqrt())
 }
 

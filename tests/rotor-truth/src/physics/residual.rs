@@ -207,8 +207,7 @@ fn station(
         }
     };
     let [inertia_z, inertia_m] = acting.flap;
-    flap.shape[p] =
-        w.acceleration[p] + cone * (x + 2.0 * v.rate[p]) - acting.air.f_z - inertia_z;
+    flap.shape[p] = w.acceleration[p] + cone * (x + 2.0 * v.rate[p]) - acting.air.f_z - inertia_z;
     flap.slope[p] = tension * w.slope[p];
     flap.curvature[p] = m_w;
     lag.shape[p] =
@@ -257,9 +256,7 @@ fn root(blade: &Blade, span: &Span, s: &Snapshot, acting: &[Acting], offsets: &[
         let f_x_air = -w.slope[p] * own.air.f_z - v.slope[p] * own.air.f_y;
         let mut f = [
             x + u[0][p] + 2.0 * v.rate[p] - u[2][p] + f_x_air,
-            v.value[p] - v.acceleration[p] - 2.0 * u[1][p]
-                + 2.0 * cone * w.rate[p]
-                + own.air.f_y,
+            v.value[p] - v.acceleration[p] - 2.0 * u[1][p] + 2.0 * cone * w.rate[p] + own.air.f_y,
             -w.acceleration[p] - cone * (x + 2.0 * v.rate[p]) + own.air.f_z + inertia_z,
         ];
         let (sin, cos) = own.theta[0].sin_cos();

@@ -62,9 +62,7 @@ impl Span {
             let length = pair[1] - pair[0];
             let pieces = (1..64_u32).find(|n| length / f64::from(*n) <= longest + 1e-12);
             let pieces = pieces.unwrap_or(64);
-            cut.extend(
-                (1..=pieces).map(|n| pair[0] + length * f64::from(n) / f64::from(pieces)),
-            );
+            cut.extend((1..=pieces).map(|n| pair[0] + length * f64::from(n) / f64::from(pieces)));
         }
         let (node, share) = gauss(points);
         let (mut x, mut weight, mut lengths) = (Vec::new(), Vec::new(), Vec::new());

@@ -102,16 +102,13 @@ impl<'a> Solver<'a> {
         if held.extra() > 0 {
             let blade = &self.elastic.blade;
             let loads = hub_loads(&self.elastic.fourier, &vec![root.as_slice(); blade.blades]);
-            let mean = |k: usize| {
-                loads.iter().map(|own| own[k]).sum::<f64>() / loads.len() as f64
-            };
+            let mean = |k: usize| loads.iter().map(|own| own[k]).sum::<f64>() / loads.len() as f64;
             let thrust = mean(2);
             if let Held::Thrust(loading) = held {
                 let aim = loading * blade.blades as f64 * blade.air_mass();
                 residual.extend([thrust - aim, mean(3), mean(4)]);
             }
-            let coefficient =
-                thrust * blade.solidity() / (blade.blades as f64 * blade.air_mass());
+            let coefficient = thrust * blade.solidity() / (blade.blades as f64 * blade.air_mass());
             let lambda = air.0.mu * air.0.tilt_rad.tan() + lambda_i;
             residual.push(momentum_defect(air.0.mu, lambda, lambda_i, coefficient));
         }
@@ -129,8 +126,8 @@ impl<'a> Solver<'a> {
         near: Option<&Response>,
     ) -> Result<Response, RotorTruthError> {
         let (start, mut evaluations) = match near {
-            Some(own) => (self.started(held, own), 0),
-            None => self.from_rest(held, air)?,
+            Some(own) => (Self::started(held, own), 0),
+            None => self.begun(held, air)?,
         };
         let place = match held {
             Held::All { .. } => 0,
@@ -142,12 +139,11 @@ impl<'a> Solver<'a> {
         let mut x = start;
         let mut last = f64::INFINITY;
         for _ in 0..JACOBIANS {
-            let jacobian = match kept.take() {
-                Some(own) => own,
-                None => {
-                    evaluations += x.len() + 1;
-                    Jacobian::at(&x, &of)
-                }
+            let jacobian = if let Some(own) = kept.take() {
+                own
+            } else {
+                evaluations += x.len() + 1;
+                Jacobian::at(&x, &of)
             };
             let found = jacobian.solve(&x, TOLERANCE, STEPS, &of)?;
             evaluations += found.iterations + 1;
@@ -170,7 +166,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The unknowns of another response, for what is held now.
-    fn started(&self, held: Held, own: &Response) -> Vec<f64> {
+    fn started(held: Held, own: &Response) -> Vec<f64> {
         let mut x = own.series().to_vec();
         match held {
             Held::All { .. } => {}
@@ -184,7 +180,7 @@ impl<'a> Solver<'a> {
     }
 
     /// A response at plausible controls, for a trim that starts from nothing.
-    fn from_rest(
+    fn begun(
         &mut self,
         held: Held,
         air: (&Flow, &FlapAngles),
@@ -197,16 +193,15 @@ impl<'a> Solver<'a> {
         };
         let (mu, tilt) = (air.0.mu, air.0.tilt_rad);
         let lambda_i = glauert(mu, tilt, loading * self.elastic.blade.solidity());
-        let controls = match held {
-            Held::Controls(own) => own,
-            _ => {
-                // blade element theory with 2 pi: CT/sigma = pi (theta/3 (1 + 1.5 mu^2) - lambda/2)
-                let lambda = mu * tilt.tan() + lambda_i;
-                let collective = (loading / PI + 0.5 * lambda) * 3.0 / (1.0 + 1.5 * mu * mu);
-                [1.25 * collective, 0.02, -0.3 * mu]
-            }
+        let controls = if let Held::Controls(own) = held {
+            own
+        } else {
+            // blade element theory with 2 pi: CT/sigma = pi (theta/3 (1 + 1.5 mu^2) - lambda/2)
+            let lambda = mu * tilt.tan() + lambda_i;
+            let collective = (loading / PI + 0.5 * lambda) * 3.0 / (1.0 + 1.5 * mu * mu);
+            [1.25 * collective, 0.02, -0.3 * mu]
         };
         let found = self.solve(Held::All { controls, lambda_i }, air, None)?;
-        Ok((self.started(held, &found), found.evaluations))
+        Ok((Self::started(held, &found), found.evaluations))
     }
 }

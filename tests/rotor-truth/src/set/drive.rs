@@ -74,8 +74,7 @@ impl Hysteresis {
     /// A lag of the fundamental at a middle amplitude and harmonic.
     pub fn of_lag(lag_deg: f64, middle_volt: f64, harmonic: usize) -> Self {
         let by_plays = (0.5 * lag_deg).min(LAG_OF_PLAYS_DEG);
-        let relaxation_rad =
-            (lag_deg - by_plays).to_radians().tan() / harmonic as f64;
+        let relaxation_rad = (lag_deg - by_plays).to_radians().tan() / harmonic as f64;
         let drive: Voltage = vec![(harmonic, Pair { cosine: middle_volt, sine: 0.0 })];
         let answer = |own: &Self| {
             let all = own.motion_volt(&drive);
@@ -152,7 +151,10 @@ mod tests {
     #[test]
     fn the_lag_is_the_one_asked_for_and_grows_with_amplitude() {
         for lag in [20.0, 32.0, 45.0] {
-            let own = Actuator { hysteresis: Some(Hysteresis::of_lag(lag, 20.0, 3)), ..Actuator::default() };
+            let own = Actuator {
+                hysteresis: Some(Hysteresis::of_lag(lag, 20.0, 3)),
+                ..Actuator::default()
+            };
             let at = |volt: f64| {
                 let drive: Voltage = vec![(3, Pair { cosine: volt, sine: 0.0 })];
                 let all = own.motion_deg(&drive);

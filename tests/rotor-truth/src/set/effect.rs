@@ -116,8 +116,7 @@ fn of_blades(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Paramet
             // as soft as a part of the blade itself
             let unit = nominal_moment_newton_metre();
             let stiffness = draw.size(3.0, 15.0);
-            let stiffness =
-                if draw.size.is_some() { stiffness } else { stiffness * b.gj * unit };
+            let stiffness = if draw.size.is_some() { stiffness } else { stiffness * b.gj * unit };
             b.pitch_spring = Some(stiffness / unit);
             told([("stiffness", json!(stiffness))])
         }

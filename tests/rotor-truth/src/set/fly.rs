@@ -119,7 +119,7 @@ fn angles(motions: &[Voltage], fourier: &Fourier, late_rad: f64) -> FlapAngles {
         .collect()
 }
 
-impl<'a> Spun<'a> {
+impl Spun<'_> {
     /// True advance ratio and loading.
     fn true_condition(&self, stated: &Condition) -> (f64, f64) {
         let m = self.machine;
@@ -228,8 +228,7 @@ impl<'a> Spun<'a> {
         let mean_torque = loads.iter().map(|own| own[5]).sum::<f64>() / loads.len() as f64;
         let hub = (0..6)
             .map(|k| {
-                let unit =
-                    if k < 3 { scales.force_newton } else { scales.moment_newton_metre() };
+                let unit = if k < 3 { scales.force_newton } else { scales.moment_newton_metre() };
                 let own = harmonics(&loads, k, HIGHEST);
                 let one = |(n, pair): (usize, Pair)| {
                     let load = self.with_imbalance(k, n, pair.times(unit));

@@ -61,9 +61,8 @@ mod tests {
         let late = Path { delay_s: 1e-3, azimuth_deg: 2.0, ..Path::default() };
         let read = late.read(2, 4, 40.0, own);
         let by = 2.0_f64.to_radians() + 0.04;
-        let at = |own: Pair, psi: f64| {
-            own.cosine * (4.0 * psi).cos() + own.sine * (4.0 * psi).sin()
-        };
+        let at =
+            |own: Pair, psi: f64| own.cosine * (4.0 * psi).cos() + own.sine * (4.0 * psi).sin();
         assert!((at(read, 1.1) - at(own, 1.1 - by)).abs() < 1e-12);
         let support = Some(SupportMode { frequency_hz: 50.0, damping: 0.0 });
         let read = Path { support, ..Path::default() }.read(0, 4, 40.0, own);

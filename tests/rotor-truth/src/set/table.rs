@@ -42,10 +42,9 @@ fn channels(readings: &[&Readings]) -> Vec<Channel> {
     for (load, harmonic) in main.chain(LOWER) {
         let (name, unit) = LOADS[load];
         let kind = if load < 3 { Kind::Force(harmonic) } else { Kind::Moment(harmonic) };
-        let parts: [(&str, fn(&Pair) -> f64); 2] =
-            [("cos", |own| own.cosine), ("sin", |own| own.sine)];
-        for (part, of) in parts {
+        for part in ["cos", "sin"] {
             let name = format!("{name}_n{harmonic}_{part}_{unit}");
+            let of = |own: &Pair| if part == "cos" { own.cosine } else { own.sine };
             let values = readings.iter().map(|own| of(&own.hub[load][harmonic])).collect();
             out.push(Channel { name, kind, values });
         }

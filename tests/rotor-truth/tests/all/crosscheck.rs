@@ -8,12 +8,8 @@ use rotor_truth::physics::trim::{Held, Solver};
 
 /// Hub loads, `cos sin` of each, of a harmonic.
 fn hub(couplings: Couplings, resolution: Resolution, harmonic: usize) -> Vec<f64> {
-    let blade = Blade {
-        cutout: 0.35,
-        couplings,
-        airloads: Airloads::QuasiSteady,
-        ..Blade::default()
-    };
+    let blade =
+        Blade { cutout: 0.35, couplings, airloads: Airloads::QuasiSteady, ..Blade::default() };
     let elastic = Elastic::new(blade, resolution).unwrap();
     let flow = elastic.flow(0.3, 5.0_f64.to_radians(), Shape::Uniform, Vec::new()).unwrap();
     let controls = [8.0_f64, 1.0, -4.0].map(f64::to_radians);
@@ -54,7 +50,9 @@ fn reference_cases_are_reproduced() {
 #[test]
 fn more_of_everything_changes_little() {
     let exact = fixture("S2", "hub_Z4");
-    for (harmonics, azimuths, points) in [(6, 32, 5), (8, 32, 5), (8, 40, 5), (10, 48, 4), (10, 48, 5), (12, 64, 6)] {
+    for (harmonics, azimuths, points) in
+        [(6, 32, 5), (8, 32, 5), (8, 40, 5), (10, 48, 4), (10, 48, 5), (12, 64, 6)]
+    {
         let resolution = Resolution { harmonics, azimuths, points, segment: 0.2 };
         let found = hub(Couplings::Full, resolution, 4);
         println!("S2 {harmonics} {azimuths} {points}: {:.2e}", error(&found, &exact));
