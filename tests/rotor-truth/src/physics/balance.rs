@@ -189,13 +189,19 @@ impl Elastic {
             } else {
                 (0.0, 0.0)
             };
+            // it crosses the chord the more, the further aft
+            let wrung = if self.blade.has_twisted_flow {
+                along * (self.blade.twist_rad + s.phi.slope[p])
+            } else {
+                0.0
+            };
             air.push(Air {
                 u_t: x + across + s.v.rate[p] + s.v.slope[p] * along + shorter,
                 u_p: lambda + s.w.rate[p] + slope * along + nearer,
                 u_p_rate: s.w.acceleration[p] + s.w.slope_rate[p] * along - slope * across,
                 along,
                 theta: own,
-                turn: own[1] + slope,
+                turn: own[1] + slope + wrung,
             });
         }
         At { q, snapshot: s, theta, air }

@@ -122,6 +122,8 @@ pub struct Blade {
     pub airloads: Airloads,
     /// Mach number of the tip in hover for the Prandtl-Glauert factor; none if incompressible.
     pub tip_mach: Option<f64>,
+    /// Whether the flow along the twisted blade makes downwash: a rate of pitch `mu cos psi theta'`.
+    pub has_twisted_flow: bool,
     /// Separation.
     pub stall: Option<Stall>,
     /// Modes of flap, lag and torsion.
@@ -162,6 +164,7 @@ impl Default for Blade {
             couplings: Couplings::Full,
             airloads: Airloads::Unsteady(Lags::Jones),
             tip_mach: None,
+            has_twisted_flow: false,
             stall: None,
             modes: [4, 4, 2],
         }

@@ -281,3 +281,53 @@ fn root(blade: &Blade, span: &Span, s: &Snapshot, acting: &[Acting], offsets: &[
     }
     sum
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Without motion and air a mass centre ahead of the axis works by the centrifugal potential
+    /// `-int e (X d_x + Y d_y)` alone.
+    #[test]
+    fn an_offset_works_by_its_potential() -> Result<(), crate::error::RotorTruthError> {
+        let e = 0.002;
+        let span = Span::new(&[], 8, 0.2);
+        let plain = Blade { twist_rad: 0.0, ..Blade::default() };
+        let ahead = Blade { mass_centre: e, ..plain.clone() };
+        let modes = Modes::of(&plain, &span)?;
+        let still: Vec<f64> = vec![0.04, 0.002, -1e-4, 1e-5, -0.01, 3e-4, 1e-5, 0.0, -0.006, 5e-4];
+        let pitch = 0.15;
+        let at = |q: &[f64]| -> Vec<[f64; 3]> { q.iter().map(|own| [*own, 0.0, 0.0]).collect() };
+        let potential = |q: &[f64]| {
+            let s = Snapshot::new(&modes, &span, &at(q));
+            let one = |p: usize| {
+                let (sin, cos) = (pitch + s.phi.value[p]).sin_cos();
+                let along = -(s.v.slope[p] * cos + s.w.slope[p] * sin);
+                -e * span.weight[p] * ((span.x[p] + s.u[0][p]) * along + s.v.value[p] * cos)
+            };
+            (0..span.len()).map(one).sum::<f64>()
+        };
+        let residual = |blade: &Blade| {
+            let q = at(&still);
+            let s = Snapshot::new(&modes, &span, &q);
+            let acting: Vec<Acting> = s
+                .phi
+                .value
+                .iter()
+                .map(|phi| Acting { theta: [pitch + phi, 0.0, 0.0], ..Acting::default() })
+                .collect();
+            equations(blade, &span, &modes, &q, &s, &acting).0
+        };
+        let found: Vec<f64> =
+            residual(&ahead).iter().zip(residual(&plain)).map(|(a, b)| a - b).collect();
+        for (k, own) in found.iter().enumerate() {
+            let mut moved = still.clone();
+            moved[k] += 1e-5;
+            let up = potential(&moved);
+            moved[k] -= 2e-5;
+            let exact = (up - potential(&moved)) / 2e-5;
+            assert!((own - exact).abs() < 1e-9, "{k}: {own} {exact}");
+        }
+        Ok(())
+    }
+}

@@ -115,7 +115,7 @@ fn of_blades(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Paramet
         "pitch-link" => {
             // as soft as a part of the blade itself
             let unit = nominal_moment_newton_metre();
-            let stiffness = draw.size(3.0, 15.0);
+            let stiffness = draw.size(5.0, 30.0);
             let stiffness = if draw.size.is_some() { stiffness } else { stiffness * b.gj * unit };
             b.pitch_spring = Some(stiffness / unit);
             told([("stiffness", json!(stiffness))])
@@ -291,7 +291,7 @@ fn outside(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Parameter
             told([("share_of_mean_inflow", json!(share))])
         }
         "lag-damper" => {
-            let constant = draw.size(20.0, 100.0);
+            let constant = draw.size(300.0, 1200.0);
             m.blade.lag_damper = Some((0.25, constant));
             told([("constant", json!(constant)), ("station_r", json!(0.25))])
         }

@@ -137,7 +137,7 @@ impl Spun<'_> {
             InflowKind::Helices => {
                 let lambda = mu * tilt.tan() + glauert(mu, tilt, thrust);
                 let blades = elastic.blade.blades;
-                Shape::Map(helices(&elastic.span, &elastic.fourier, blades, mu, lambda))
+                Shape::Map(helices(&elastic.span, &elastic.fourier, blades, mu, lambda).0)
             }
         };
         let further = self.machine.upwash.map_or_else(Vec::new, |own| {

@@ -112,7 +112,8 @@ pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
         return Err(RotorTruthError::Value { what, value: points as f64, expected });
     }
     let layout = Layout::draw(&mut of_layout, points, chosen.needs_drive);
-    let believed = Blade { couplings: Couplings::Third, ..Blade::default() };
+    let believed =
+        Blade { couplings: Couplings::Third, has_twisted_flow: true, ..Blade::default() };
     let mut machine = Machine::believed(believed.clone());
     let base_ratios = if request.base_error {
         with_base_error(&mut machine.blade, &mut stream(request.seed, 2))
