@@ -8,7 +8,7 @@ use super::machine::Machine;
 use super::{case, table};
 use crate::error::RotorTruthError;
 use crate::physics::balance::Resolution;
-use crate::physics::blade::{Blade, Couplings};
+use crate::physics::blade::{Airloads, Blade, Couplings, Lags};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -51,6 +51,8 @@ pub struct Answer {
     pub points: usize,
     /// Whether flaps are driven.
     pub is_driven: bool,
+    /// Lags of the sections, in truth and case.
+    pub lags: Lags,
     /// True over believed value of the uncertain inputs.
     pub base_ratios: BTreeMap<&'static str, f64>,
 }
@@ -112,8 +114,16 @@ pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
         return Err(RotorTruthError::Value { what, value: points as f64, expected });
     }
     let layout = Layout::draw(&mut of_layout, points, chosen.needs_drive);
-    let believed =
-        Blade { couplings: Couplings::Third, has_twisted_flow: true, ..Blade::default() };
+    // the product's model of Jones's lags has no Mach number that an effect could add
+    let has_beddoes = stream(request.seed, 4).random_range(0..6) == 0;
+    let needs_mach = chosen.name == "compressibility";
+    let lags = if has_beddoes || needs_mach { Lags::Beddoes } else { Lags::Jones };
+    let believed = Blade {
+        couplings: Couplings::Third,
+        has_twisted_flow: true,
+        airloads: Airloads::Unsteady(lags),
+        ..Blade::default()
+    };
     let mut machine = Machine::believed(believed.clone());
     let base_ratios = if request.base_error {
         with_base_error(&mut machine.blade, &mut stream(request.seed, 2))
@@ -132,6 +142,7 @@ pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
         snr_db: request.snr_db,
         points: readings.iter().map(Vec::len).sum(),
         is_driven: layout.drives.is_driven,
+        lags,
         base_ratios,
     };
     Ok(Made { sweep_csv, case_ron: case::text(&believed), answer })
