@@ -1,0 +1,149 @@
+//! A set: effect and layout drawn by the seed, flown, put into text.
+
+use super::catalogue::{CATALOGUE, Entry, entry};
+use super::effect::{Parameters, apply};
+use super::fly::fly;
+use super::layout::Layout;
+use super::machine::Machine;
+use super::{case, table};
+use crate::error::RotorTruthError;
+use crate::physics::balance::Resolution;
+use crate::physics::blade::{Airloads, Blade, Couplings, Lags};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a set is asked to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Seed of everything that is drawn.
+    pub seed: u64,
+    /// Noise below the readings, dB.
+    pub snr_db: f64,
+    /// Effect; drawn by the seed if none.
+    pub effect: Option<String>,
+    /// Its size; drawn if none.
+    pub size: Option<f64>,
+    /// Number of points; drawn if none.
+    pub points: Option<usize>,
+    /// Whether the uncertain inputs of the case are off by their deviations.
+    pub base_error: bool,
+    /// How finely the rotor is resolved.
+    pub resolution: Resolution,
+}
+
+/// What is hidden in a set.
+#[derive(Debug, Clone, Serialize)]
+pub struct Answer {
+    /// Name of the effect.
+    pub effect: String,
+    /// Its parameters, by the names of the causes.
+    pub parameters: Parameters,
+    /// Whether the list of the product has it.
+    pub in_library: bool,
+    /// Seed.
+    pub seed: u64,
+    /// Noise, dB below the readings.
+    pub snr_db: f64,
+    /// Number of points.
+    pub points: usize,
+    /// Whether flaps are driven.
+    pub is_driven: bool,
+    /// Lags of the sections, in truth and case.
+    pub lags: Lags,
+    /// True over believed value of the uncertain inputs.
+    pub base_ratios: BTreeMap<&'static str, f64>,
+}
+
+/// A set as text.
+#[derive(Debug, Clone)]
+pub struct Made {
+    /// The table of points.
+    pub sweep_csv: String,
+    /// The case of the engineer.
+    pub case_ron: String,
+    /// What is hidden.
+    pub answer: Answer,
+}
+
+/// A generator of its own for each thing that is drawn: another size draws no other noise.
+fn stream(seed: u64, number: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(number);
+    rng
+}
+
+fn drawn(rng: &mut ChaCha8Rng) -> Entry {
+    CATALOGUE[rng.random_range(0..CATALOGUE.len())]
+}
+
+/// Moves the uncertain inputs of a blade; returns true over believed values.
+fn with_base_error(blade: &mut Blade, rng: &mut ChaCha8Rng) -> BTreeMap<&'static str, f64> {
+    let mut out = BTreeMap::new();
+    for (field, percent) in case::UNCERTAIN {
+        let normal: f64 = StandardNormal.sample(rng);
+        let ratio = 1.0 + 0.01 * percent * normal.clamp(-2.5, 2.5);
+        let value = match field {
+            "rotor.gj" => &mut blade.gj,
+            "rotor.ei_flap" => &mut blade.ei_flap,
+            "rotor.ei_lag" => &mut blade.ei_lag,
+            "rotor.lock_number" => &mut blade.lock_number,
+            _ => &mut blade.gyration[1],
+        };
+        *value *= ratio;
+        out.insert(field, ratio);
+    }
+    out
+}
+
+/// Makes a set.
+///
+/// # Errors
+/// [`RotorTruthError`] of an unknown effect, a number of points out of range, or a point that does not converge.
+pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
+    let mut rng = stream(request.seed, 0);
+    let chosen = drawn(&mut rng);
+    let chosen = request.effect.as_deref().map_or(Ok(chosen), entry)?;
+    let mut of_layout = stream(request.seed, 1);
+    let drawn_points = of_layout.random_range(20..=50);
+    let points = request.points.unwrap_or(drawn_points);
+    if !(4..=400).contains(&points) {
+        let (what, expected) = ("the number of points", "4 to 400");
+        return Err(RotorTruthError::Value { what, value: points as f64, expected });
+    }
+    let layout = Layout::draw(&mut of_layout, points, chosen.needs_drive);
+    // the product's model of Jones's lags has no Mach number that an effect could add
+    let has_beddoes = stream(request.seed, 4).random_range(0..6) == 0;
+    let needs_mach = chosen.name == "compressibility";
+    let lags = if has_beddoes || needs_mach { Lags::Beddoes } else { Lags::Jones };
+    let believed = Blade {
+        couplings: Couplings::Third,
+        has_twisted_flow: true,
+        airloads: Airloads::Unsteady(lags),
+        ..Blade::default()
+    };
+    let mut machine = Machine::believed(believed.clone());
+    let base_ratios = if request.base_error {
+        with_base_error(&mut machine.blade, &mut stream(request.seed, 2))
+    } else {
+        BTreeMap::new()
+    };
+    let parameters = apply(chosen.name, request.size, &mut machine, &layout.drives, &mut rng)?;
+    let readings = fly(&machine, &layout.groups, request.resolution)?;
+    let mut noise = stream(request.seed, 3);
+    let sweep_csv = table::text(&layout.groups, &readings, request.snr_db, &mut noise);
+    let answer = Answer {
+        effect: chosen.name.to_owned(),
+        parameters,
+        in_library: chosen.is_known,
+        seed: request.seed,
+        snr_db: request.snr_db,
+        points: readings.iter().map(Vec::len).sum(),
+        is_driven: layout.drives.is_driven,
+        lags,
+        base_ratios,
+    };
+    Ok(Made { sweep_csv, case_ron: case::text(&believed), answer })
+}

@@ -1,0 +1,5 @@
+//! Tests of the rotor against values it did not make, and of the sets.
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod crosscheck;
+mod sets;
