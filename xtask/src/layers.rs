@@ -14,6 +14,9 @@ pub const TOOLS_FLOOR: u32 = 9;
 /// The member that makes synthetic measurements and shares no code with the product.
 pub const TRUTH: &str = "truth";
 
+/// The member that makes points of test of a rotor of its own, and shares no code with any other.
+pub const ROTOR_TRUTH: &str = "rotor-truth";
+
 /// The member that makes synthetic measurements with everyday errors, and shares no code with product or [`TRUTH`].
 pub const EVERYDAY: &str = "everyday-bench";
 
@@ -35,8 +38,17 @@ pub const RESERVED_CRATES: [&str; 10] = [
 ];
 
 /// The members that may use [`RESERVED_CRATES`] in what they ship; tests may use them anywhere.
-pub const RESERVED_FOR: [&str; 8] =
-    ["measured-data", "sim-driver", "xtask", TRUTH, EVERYDAY, SCORE, "validation", "e2e"];
+pub const RESERVED_FOR: [&str; 9] = [
+    "measured-data",
+    "sim-driver",
+    "xtask",
+    TRUTH,
+    ROTOR_TRUTH,
+    EVERYDAY,
+    SCORE,
+    "validation",
+    "e2e",
+];
 
 /// The member whose studies take values and give values.
 pub const STUDY: &str = "rotor-study";
@@ -159,7 +171,8 @@ pub enum LayerFault {
 ///
 /// - every member names one of [`FLOORS`];
 /// - dependencies of every kind, tests included, lead to strictly lower floors;
-/// - [`TRUTH`] and [`EVERYDAY`] use no other member, [`SCORE`] none but them, and no member below the tools uses them;
+/// - [`TRUTH`], [`ROTOR_TRUTH`] and [`EVERYDAY`] use no other member, [`SCORE`] none but them, and no member below the tools
+///   uses them;
 /// - [`RESERVED_CRATES`] are used by [`RESERVED_FOR`] alone, or in tests.
 pub fn check(members: &[Member]) -> Vec<LayerFault> {
     let floors: BTreeMap<&str, Option<u32>> =
@@ -202,8 +215,8 @@ fn check_member_edge(
     below: Option<u32>,
 ) -> Option<LayerFault> {
     let (name, kind) = (dependency.name.clone(), dependency.kind);
-    let apart = |member: &str| [TRUTH, EVERYDAY, SCORE].contains(&member);
-    let scorer = member.name == SCORE && [TRUTH, EVERYDAY].contains(&name.as_str());
+    let apart = |member: &str| [TRUTH, ROTOR_TRUTH, EVERYDAY, SCORE].contains(&member);
+    let scorer = member.name == SCORE && [TRUTH, ROTOR_TRUTH, EVERYDAY].contains(&name.as_str());
     let user = apart(&name) && member.floor != Some(TOOLS_FLOOR);
     if (apart(&member.name) || user) && !scorer {
         return Some(LayerFault::TruthNotApart {

@@ -11,8 +11,8 @@ use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, ci, dependencies, dynamic_stall, everyday_errors, files,
-    hidden_effects, hover_refinement, layers, refinement, regress, rooms, tidy, validate,
-    wake_control, wake_inflow, wake_refinement, workspace,
+    hidden_effects, hover_refinement, layers, refinement, regress, rooms, rotor_sets, tidy,
+    validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -62,6 +62,9 @@ enum Chore {
     },
     /// Diagnose synthetic sets with hidden effects and score the findings against the answers
     HiddenEffects {
+        /// Kind of the data
+        #[arg(long, value_enum, default_value = "bench")]
+        kind: SetKind,
         /// Sets of each cause at each noise level; ten without effect, four pairs, four unknown effects with each
         #[arg(long, default_value_t = 10)]
         seeds: u64,
@@ -93,6 +96,15 @@ enum Chore {
     DynamicStall(Stall),
     /// Run .ci/run: everything a change must pass
     Ci,
+}
+
+/// Kinds of data with hidden effects.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum SetKind {
+    /// Records of an actuator on a bench.
+    Bench,
+    /// Points of test of a rotor: `--seeds` sets of each effect at each noise.
+    Rotor,
 }
 
 /// Families of a suite.
@@ -288,12 +300,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &report.text());
             Ok(ExitCode::from(report.exit_code()))
         }
-        Chore::HiddenEffects { seeds, first_block, snr, only, suite } => {
+        Chore::HiddenEffects { kind, seeds, first_block, snr, only, suite } => {
             let selection = hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
-            let progress = |line: &str| say(&mut std::io::stderr(), line);
-            let report = hidden_effects::run(root, &suite.options(selection), progress)?;
-            say(&mut std::io::stdout(), &report.text());
-            Ok(ExitCode::from(report.exit_code()))
+            hidden(root, kind, &suite.options(selection))
         }
         Chore::EverydayErrors(options) => everyday(root, options),
         Chore::Bench { quick, only } => speed(root, quick, only),
@@ -328,6 +337,26 @@ fn validation(root: &Path, options: &Validation) -> Result<ExitCode, XtaskError>
     }
     say(&mut std::io::stdout(), &text);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn hidden(
+    root: &Path,
+    kind: SetKind,
+    options: &Options<hidden_effects::Selection>,
+) -> Result<ExitCode, XtaskError> {
+    let progress = |line: &str| say(&mut std::io::stderr(), line);
+    let (text, code) = match kind {
+        SetKind::Bench => {
+            let report = hidden_effects::run(root, options, progress)?;
+            (report.text(), report.exit_code())
+        }
+        SetKind::Rotor => {
+            let report = rotor_sets::run(root, options, progress)?;
+            (report.text(), report.exit_code())
+        }
+    };
+    say(&mut std::io::stdout(), &text);
+    Ok(ExitCode::from(code))
 }
 
 fn everyday(root: &Path, options: Everyday) -> Result<ExitCode, XtaskError> {

@@ -7,12 +7,14 @@
 //! | hub loads, controls, airloads of a sweep | [`rotor`] |
 //! | frequencies of a blade | [`blade`] |
 //! | loads of an oscillating section | [`section`] |
+//! | anyone's simulator as tables | [`TableData`] |
 
 pub mod blade;
 mod diagnosis;
 mod error;
 pub mod rotor;
 pub mod section;
+mod table;
 
 use measured_data::problem::{Fault, Problems};
 use measured_data::{DatasetKind, SweepData};
@@ -24,6 +26,7 @@ pub use rotor::{
     RotorDiagnosis, RotorModel, RotorQuestion, Setting, Sweep, SweepChannel, SweepPoint,
     USUAL_UNCERTAIN, alternatives, diagnose, moved, predict, stated, usual_uncertain,
 };
+pub use table::{TableData, read_table};
 
 /// Checks the columns of points of any kind.
 ///

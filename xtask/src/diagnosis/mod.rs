@@ -168,8 +168,22 @@ impl Hhc {
         if !only.is_empty() {
             arguments.extend(["--only", &list]);
         }
+        self.found(&arguments, folder)
+    }
+
+    /// Findings and wall time of one diagnosis of the case `folder/case.ron` from `folder/sweep.csv`.
+    pub(crate) fn diagnose_points(&self, folder: &Path) -> Result<(Findings, f64), XtaskError> {
+        let output = self.call(&["import", "sweep.csv", "-o", "measured"], folder)?;
+        if !output.status.success() {
+            return Err(self.failed(&output));
+        }
+        self.found(&["diagnose", "case.ron", "--data", "measured", "-o", "found"], folder)
+    }
+
+    /// The findings that a call writes to `folder/found`, and its wall time.
+    fn found(&self, arguments: &[&str], folder: &Path) -> Result<(Findings, f64), XtaskError> {
         let begin = Instant::now();
-        let output = self.call(&arguments, folder)?;
+        let output = self.call(arguments, folder)?;
         let seconds = begin.elapsed().as_secs_f64();
         if !output.status.success() {
             return Err(self.failed(&output));

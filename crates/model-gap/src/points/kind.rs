@@ -188,26 +188,61 @@ impl<K: PointKind> KindQuestion<'_, K> {
         effects.extend(singles.iter().filter(is_good).take(SURVIVORS).map(|own| &own.0));
         let mut moved = false;
         for effect in effects {
-            let cause = &self.causes[effect.candidate];
-            for (k, &value) in effect.values.iter().enumerate() {
-                let own = &mut table.suspects[effect.candidate].parameters[k];
-                let Some(size) = own.tables.first().map(|table| (table.0 - own.none).abs()) else {
-                    continue;
-                };
-                let known = own.tables.iter().map(|table| table.0).chain([own.none]);
-                let nearest = known.map(|at| (value - at).abs()).fold(f64::INFINITY, f64::min);
-                if nearest <= MOVED * size.max((value - own.none).abs()) {
-                    continue;
-                }
-                let mut values = cause.none();
-                values[k] = value;
-                // where it cannot be read its effect stays as it was
-                if let Ok(grid) = self.kind.read(&cause.applied(self.model, &values)) {
-                    own.tables.push((value, grid));
-                    moved = true;
+            moved |=
+                self.recompute(&mut table.suspects[effect.candidate], effect, &table.predicted);
+        }
+        moved
+    }
+
+    /// Computes an effect anew at its values, where these are off those it is known at. What its parameters do together beyond
+    /// the sum of each is put to the last of them, so that the sum is right there. False where nothing was computed.
+    fn recompute(&self, suspect: &mut Suspect, effect: &Effect, base: &Grid) -> bool {
+        let (cause, values) = (&self.causes[effect.candidate], &effect.values);
+        let is_off = |(own, &value): (&SuspectParameter, &f64)| {
+            let Some(size) = own.tables.first().map(|table| (table.0 - own.none).abs()) else {
+                return false;
+            };
+            let known = own.tables.iter().map(|table| table.0).chain([own.none]);
+            let nearest = known.map(|at| (value - at).abs()).fold(f64::INFINITY, f64::min);
+            nearest > MOVED * size.max((value - own.none).abs())
+        };
+        if !suspect.parameters.iter().zip(values).any(is_off) {
+            return false;
+        }
+        let read = |values: &[f64]| self.kind.read(&cause.applied(self.model, values)).ok();
+        let none = cause.none();
+        let acting: Vec<usize> = (0..values.len())
+            .filter(|&k| !suspect.parameters[k].tables.is_empty() && values[k] - none[k] != 0.0)
+            .collect();
+        let alone = |&k: &usize| {
+            let mut own = none.clone();
+            own[k] = values[k];
+            read(&own)
+        };
+        // where it cannot be read its effect stays as it was
+        let Some(mut grids) = acting.iter().map(alone).collect::<Option<Vec<Grid>>>() else {
+            return false;
+        };
+        if let ([.., last], [_, _, ..]) = (&mut grids[..], &acting[..])
+            && let Some(together) = read(values)
+        {
+            *last = together;
+            let last = acting.len() - 1;
+            for other in 0..last {
+                let less = grids[other].clone();
+                for ((row, less), base) in grids[last].iter_mut().zip(&less).zip(base) {
+                    for ((value, less), base) in row.iter_mut().zip(less).zip(base) {
+                        *value -= less - base;
+                    }
                 }
             }
         }
-        moved
+        for (&k, grid) in acting.iter().zip(grids) {
+            let tables = &mut suspect.parameters[k].tables;
+            tables.retain(|own| own.0 - values[k] != 0.0);
+            // the first stays the amount that matters
+            tables.push((values[k], grid));
+        }
+        true
     }
 }

@@ -127,11 +127,22 @@ fn case_of(mut own: RotorModel, model: &RotorModel) -> Option<Case> {
     (own.case != model.case).then_some(own.case)
 }
 
+/// The drive of middle amplitude: harmonic and voltage; none where no flap is driven.
+fn middle_drive(sweep: &Sweep) -> Option<(usize, Harmonic)> {
+    let driven = sweep.points.iter().flat_map(|point| &point.flaps_volt);
+    let mut all: Vec<(usize, Harmonic)> = driven.flatten().copied().collect();
+    all.retain(|own| amplitude(own.1) > 0.0);
+    all.sort_by(|a, b| amplitude(a.1).total_cmp(&amplitude(b.1)));
+    all.get(all.len() / 2).copied()
+}
+
 impl<'a> Flights<'a> {
     /// Every point flown as simulated, and those that cannot be.
     fn of(question: &'a RotorQuestion<'a>) -> Result<(Self, Vec<Aside>), RotorGapError> {
         let RotorQuestion { case, sweep, .. } = question;
-        let model = RotorModel::of((*case).clone());
+        let mut model = RotorModel::of((*case).clone());
+        let middle = middle_drive(sweep);
+        model.drive.middle = middle.map_or((1, 0.0), |(harmonic, own)| (harmonic, amplitude(own)));
         let own = question.actuator.clone();
         let actuators = Actuators::of(case, own, question.hysteretic.clone());
         let actuators = actuators.map_err(|source| RotorGapError::Study {
@@ -164,7 +175,7 @@ impl<'a> Flights<'a> {
 
     /// The library for these points.
     fn causes(&self) -> Vec<RotorCause> {
-        let middle = self.middle_drive();
+        let middle = middle_drive(self.question.sweep);
         let lag_deg = middle.map_or_else(Vec::new, |own| self.lags_deg(own));
         library(&Occasion {
             model: &self.model,
@@ -172,7 +183,6 @@ impl<'a> Flights<'a> {
             has_hysteretic: self.actuators.hysteretic.is_some(),
             is_ideal: matches!(self.actuators.own, FlapDrive::Ideal { .. }),
             is_driven: self.question.sweep.points.iter().any(SweepPoint::is_driven),
-            middle_volt: middle.map_or(1.0, |own| amplitude(own.1)),
             lag_deg: &lag_deg,
         })
     }
@@ -195,15 +205,6 @@ impl<'a> Flights<'a> {
     fn study_error(&self, place: usize, source: StudyError) -> RotorGapError {
         let point = self.question.sweep.points[self.points[place]].id.clone();
         RotorGapError::Study { point, source: Box::new(source) }
-    }
-
-    /// The drive of middle amplitude: harmonic and voltage; none where no flap is driven.
-    fn middle_drive(&self) -> Option<(usize, Harmonic)> {
-        let driven = self.question.sweep.points.iter().flat_map(|point| &point.flaps_volt);
-        let mut all: Vec<(usize, Harmonic)> = driven.flatten().copied().collect();
-        all.retain(|own| amplitude(own.1) > 0.0);
-        all.sort_by(|a, b| amplitude(a.1).total_cmp(&amplitude(b.1)));
-        all.get(all.len() / 2).copied()
     }
 
     /// Lag of an actuator with a part of the hysteresis, at a drive.

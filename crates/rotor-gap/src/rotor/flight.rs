@@ -73,9 +73,13 @@ impl Actuators {
             _ => own,
         };
         let volt = voltages.iter().map(|(_, own)| amplitude(*own).powi(2)).sum::<f64>().sqrt();
-        let lag_rad = (drive.lag_deg_per_root_volt * volt.sqrt()).to_radians();
-        let harmonics = mixed.harmonics.iter().map(|own| later(*own, lag_rad)).collect();
-        Ok(scaled(&HarmonicSeries { mean: mixed.mean, harmonics }, drive.gain))
+        let moved = |(k, own): (usize, &Harmonic)| {
+            let (gain, late_rad) = drive.lagging(k + 1, volt);
+            let own = later(*own, late_rad);
+            Harmonic { cosine: gain * own.cosine, sine: gain * own.sine }
+        };
+        let harmonics = mixed.harmonics.iter().enumerate().map(moved).collect();
+        Ok(HarmonicSeries { mean: drive.gain * mixed.mean, harmonics })
     }
 }
 

@@ -3,7 +3,7 @@
 use rotor_base::Harmonic;
 use rotor_study::case::Case;
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// A rotor as simulated.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,9 +29,41 @@ pub struct FlapDriveModel {
     pub gain: f64,
     /// Part of the difference between an actuator with hysteresis and an ideal one that the motion has.
     pub hysteresis: f64,
-    /// Lag of every harmonic, deg, over the root of the amplitude of the voltage, V: hysteresis that keeps the stroke.
-    pub lag_deg_per_root_volt: f64,
+    /// Lag of an actuator at the middle drive, deg.
+    pub lag_deg: f64,
+    /// The part of it that is a relaxation, which grows with frequency and loses stroke by it, deg; the rest grows with the
+    /// amplitude, and the stroke with it.
+    pub relaxation_deg: f64,
+    /// Harmonic and amplitude, V, of the middle drive: the gain is that there.
+    pub middle: (usize, f64),
 }
+
+impl FlapDriveModel {
+    /// What the motion of a harmonic is times and how much later it comes, rad, at an amplitude of the voltage.
+    ///
+    /// ```text
+    /// g h(A) / h(A_m) q(n) / q(n_m),   q = 1 / (1 + i (n / n_m) tan r),   h = 1 - b + b (A / A_m) (1 - 4 i / (3 pi))
+    /// ```
+    /// `l` the lag, `r` the relaxation in it, at harmonic `n_m` and amplitude `A_m`; `h` is the first harmonic of Rayleigh's law,
+    /// `b` so that it lags `l - r` there. What it cannot lag, 23 deg at most, lags at every amplitude alike.
+    pub fn lagging(&self, harmonic: usize, amplitude_volt: f64) -> (f64, f64) {
+        let (middle, volt) = (self.middle.0.max(1) as f64, self.middle.1);
+        let relaxation_rad = self.relaxation_deg.to_radians();
+        let slow = harmonic as f64 / middle * relaxation_rad.tan();
+        let over = if volt > 0.0 { amplitude_volt / volt } else { 1.0 };
+        let play_rad = (self.lag_deg - self.relaxation_deg).to_radians();
+        let most_rad = RAYLEIGH.atan();
+        let of_play_rad = play_rad.clamp(-most_rad, most_rad);
+        let share = of_play_rad.tan() / RAYLEIGH;
+        let (in_phase, behind) = (share.mul_add(over - 1.0, 1.0), RAYLEIGH * share * over);
+        let stroke = self.gain * in_phase.hypot(behind) * of_play_rad.cos();
+        let late_rad = slow.atan() + behind.atan2(in_phase) + play_rad - of_play_rad;
+        (stroke / (relaxation_rad.cos() * slow.hypot(1.0)), late_rad)
+    }
+}
+
+/// Quadrature over the growth of the stroke in Rayleigh's law of hysteresis, `4 / (3 pi)`.
+const RAYLEIGH: f64 = 4.0 / (3.0 * PI);
 
 /// From loads to readings.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +90,13 @@ impl RotorModel {
             speed: 1.0,
             density: 1.0,
             lift_slope: 1.0,
-            drive: FlapDriveModel { gain: 1.0, hysteresis: 0.0, lag_deg_per_root_volt: 0.0 },
+            drive: FlapDriveModel {
+                gain: 1.0,
+                hysteresis: 0.0,
+                lag_deg: 0.0,
+                relaxation_deg: 0.0,
+                middle: (1, 0.0),
+            },
             path: LoadPath::default(),
         }
     }
@@ -115,6 +153,26 @@ pub(crate) fn later(own: Harmonic, angle_rad: f64) -> Harmonic {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// At the middle drive the lag is that stated and the gain too; a relaxation lags more and moves less at higher harmonics, and
+    /// what remains more at larger amplitudes, where it moves more.
+    #[test]
+    fn a_flap_lags_by_amplitude_and_frequency() {
+        let mut drive = RotorModel::of(Case::default()).drive;
+        (drive.lag_deg, drive.relaxation_deg, drive.gain) = (30.0, 15.0, 0.8);
+        drive.middle = (3, 20.0);
+        let at = |n, volt| drive.lagging(n, volt);
+        let (gain, late) = at(3, 20.0);
+        assert!((gain - 0.8).abs() < 1e-12 && (late.to_degrees() - 30.0).abs() < 1e-9);
+        let high = at(6, 20.0);
+        assert!(high.0 < gain && high.1 > late);
+        let large = at(3, 80.0);
+        assert!(large.0 > gain && large.1 > late);
+        // Rayleigh's law: a loop of amplitude A lags by atan(4/(3 pi)) where nothing of its stroke is there at once
+        assert!(at(3, 1e9).1.to_degrees() < 15.0 + RAYLEIGH.atan().to_degrees() + 1e-6);
+        let more = FlapDriveModel { lag_deg: 60.0, ..drive };
+        assert!((more.lagging(3, 20.0).1.to_degrees() - 60.0).abs() < 1e-9);
+    }
 
     /// A delay of a time turns a harmonic by its frequency times that; a support far above passes all, one far below turns
     /// the sign.

@@ -7,8 +7,8 @@ use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
     CasePoints, Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis,
-    PointStory, Question, Record, Records, Specimens, Stage, Story, TableData, climb, extended,
-    plan, read_table, usual_runs,
+    PointStory, Question, Record, Records, Specimens, Stage, Story, climb, extended, plan,
+    usual_runs,
 };
 use crate::files::{
     DATASET, DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
@@ -20,6 +20,7 @@ use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
 use measured_data::{Accuracy, DatasetKind};
 use preisach_dyn::ActuatorModel;
+use rotor_gap::{TableData, read_table};
 use std::path::{Path, PathBuf};
 
 /// Name of the actuator a diagnosis extended.

@@ -14,7 +14,7 @@ pub use cache::FolderStore;
 pub use ladder::{Climb, Ladder, Rung, climb};
 pub use model_gap::Findings;
 pub use plan_text::PlanText;
-pub use points::{CasePoints, PointDiagnosis, PointStory, TableData, read_table};
+pub use points::{CasePoints, PointDiagnosis, PointStory};
 pub use specimens::{MissingInSome, Specimen, Specimens};
 pub use story::Story;
 

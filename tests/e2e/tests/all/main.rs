@@ -6,6 +6,7 @@ mod hidden_effects;
 mod ladder;
 mod metamorphic;
 mod rotor_points;
+mod rotor_truth;
 mod shipped_bench;
 mod threads;
 mod three_sets;

@@ -8,10 +8,10 @@ const HYSTERESIS: &str = "the actuators have hysteresis that the simulation lack
 
 fn of_actuators(
     o: &Occasion<'_>,
-    parameter: CauseParameter,
-    apply: impl Fn(&mut RotorModel, f64) + Send + Sync + 'static,
+    parameters: Vec<CauseParameter>,
+    apply: impl Fn(&mut RotorModel, &[f64]) + Send + Sync + 'static,
 ) -> RotorCause {
-    RotorCause::new("actuator-hysteresis", HYSTERESIS, vec![parameter], move |m, v| apply(m, v[0]))
+    RotorCause::new("actuator-hysteresis", HYSTERESIS, parameters, apply)
         .beside(
             &["azimuth-offset", "channel-delay"],
             &["amplitude steps at one harmonic", "the motion of the flaps measured"],
@@ -20,20 +20,28 @@ fn of_actuators(
         .blocked_if(!o.is_ideal, "the actuator of the case has hysteresis already")
 }
 
-/// Two ways of one cause. A part of the difference between an actuator with hysteresis and an ideal one, lost stroke with it;
-/// its lag is reported. And a lag that keeps the stroke.
+/// Two ways of one cause. A part of the difference between an actuator with hysteresis and an ideal one, the stroke that it
+/// loses with it; its lag is reported. And a lag of which a part grows with amplitude, the rest with frequency, and a stroke.
 pub(super) fn actuator_hysteresis(o: &Occasion<'_>) -> [RotorCause; 2] {
-    let lag = |range, amounts, shown| {
-        let (name, unit, none) = ("lag_deg", "deg", 0.0);
+    let degrees = |name, range, amounts: &[f64], shown| {
+        let (unit, none, amounts) = ("deg", 0.0, amounts.to_vec());
         CauseParameter { name, unit, none, range, amounts, shown }
     };
-    let part = lag((0.0, 2.0), vec![0.5, 1.0], Shown::Beside(o.lag_deg.to_vec()));
-    let kept = lag((0.0, 80.0), vec![20.0, 45.0], Shown::Itself);
-    let root_volt = o.middle_volt.sqrt();
+    let beside = Shown::Beside(o.lag_deg.to_vec());
+    let part = degrees("lag_deg", (0.0, 2.0), &[0.5, 1.0], beside);
+    let of_lag = vec![
+        degrees("lag_deg", (0.0, 80.0), &[20.0, 45.0], Shown::Itself),
+        degrees("relaxation_deg", (-20.0, 60.0), &[15.0, -10.0], Shown::Itself),
+        CauseParameter::ratio(&[0.9, 0.7], (0.2, 2.5)).named("stroke"),
+    ];
     [
-        of_actuators(o, part, |m, v| m.drive.hysteresis += v)
+        of_actuators(o, vec![part], |m, v| m.drive.hysteresis += v[0])
             .blocked_if(!o.has_hysteretic, "no actuator with hysteresis is at hand"),
-        of_actuators(o, kept, move |m, v| m.drive.lag_deg_per_root_volt += v / root_volt),
+        of_actuators(o, of_lag, |m, v| {
+            m.drive.lag_deg += v[0];
+            m.drive.relaxation_deg += v[1];
+            m.drive.gain *= v[2];
+        }),
     ]
 }
 

@@ -27,8 +27,6 @@ pub(crate) struct Occasion<'a> {
     pub(crate) is_ideal: bool,
     /// Whether flaps are driven at any point.
     pub(crate) is_driven: bool,
-    /// Middle amplitude of the driven points, V.
-    pub(crate) middle_volt: f64,
     /// Lag of that actuator by its part of the motion, deg, at the middle amplitude of the points.
     pub(crate) lag_deg: &'a [(f64, f64)],
 }
@@ -111,7 +109,6 @@ mod tests {
             has_hysteretic: true,
             is_ideal: true,
             is_driven: true,
-            middle_volt: 30.0,
             lag_deg: &lag_deg,
         };
         let all = library(&occasion);

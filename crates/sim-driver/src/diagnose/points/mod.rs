@@ -2,8 +2,6 @@
 
 mod case;
 mod story;
-mod table;
 
 pub use case::CasePoints;
 pub use story::{PointDiagnosis, PointStory};
-pub use table::{TableData, read_table};

@@ -1,8 +1,7 @@
 //! A folder of tables as what the engine asks for.
 
-use crate::files::Folder;
-use crate::problem::{Fault, Problem, Problems};
-use measured_data::{EffectTables, Scatter, read_effect_tables};
+use measured_data::problem::{Fault, Problem, Problems};
+use measured_data::{EffectTables, Folder, Scatter, read_effect_tables};
 use model_gap::points::{
     Instrument, Point, PointTable, Shown, Suspect, SuspectParameter, channels_of, lasting,
 };

@@ -1,0 +1,193 @@
+//! The suite of rotors: points of test of an independent rotor with a hidden effect, diagnosed by the program, scored against
+//! their answers.
+//!
+//! The result of each set is kept below `target/rotor-sets`, in a folder named after the programs that made it: an interrupted
+//! suite goes on where it was, a changed program begins anew.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+use rotor_truth::physics::balance::Resolution;
+use rotor_truth::set::catalogue::{CATALOGUE, Entry};
+use rotor_truth::set::made::{Request, make};
+use score::metrics::Metric;
+use score::report;
+use score::rotor::{RotorCase, metrics, wrong_ones};
+
+use crate::XtaskError;
+use crate::diagnosis::{
+    Failure, Hhc, Options, closing, counted, exit_code, keep_result, makers, pool, read_result,
+    read_results, set_up, write_folder,
+};
+use crate::files;
+use crate::hidden_effects::Selection;
+
+/// Seeds of a block, and of an effect in it.
+const BLOCK: u64 = 10_000;
+const EFFECT: u64 = 200;
+
+/// One set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorSet {
+    /// Its seed.
+    pub seed: u64,
+    /// What is hidden.
+    pub effect: &'static str,
+    /// Noise below the readings, dB.
+    pub snr_db: f64,
+}
+
+/// The sets of a selection: of every effect, or of the one that is named, so many at each noise.
+pub fn sets(selection: &Selection) -> Vec<RotorSet> {
+    let Selection { seeds, first_block, snr_db, only } = selection;
+    let wanted = |own: &(usize, &Entry)| only.is_empty() || own.1.name == only;
+    let effects = CATALOGUE.iter().enumerate().filter(wanted);
+    let of_effect = |(number, own): (usize, &Entry)| {
+        let first = first_block * BLOCK + number as u64 * EFFECT;
+        let effect = own.name;
+        let at = move |snr_db: &f64| {
+            let snr_db = *snr_db;
+            (0..*seeds)
+                .map(move |k| RotorSet { seed: first + k, effect, snr_db })
+                .collect::<Vec<_>>()
+        };
+        snr_db.iter().flat_map(at).collect::<Vec<_>>()
+    };
+    effects.flat_map(of_effect).collect()
+}
+
+/// What the suite found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RotorReport {
+    /// The scored sets, in order of their seeds.
+    pub cases: Vec<RotorCase>,
+    /// The metrics.
+    pub metrics: Vec<Metric>,
+    /// Sets without findings.
+    pub failures: Vec<Failure>,
+}
+
+impl RotorReport {
+    /// The report of scored sets.
+    pub fn of(mut cases: Vec<RotorCase>, failures: Vec<Failure>) -> Self {
+        cases.sort_by_key(|case| case.answer.seed);
+        Self { metrics: metrics(&cases), cases, failures }
+    }
+
+    /// Tables for the terminal.
+    pub fn text(&self) -> String {
+        let mut text = makers(self.cases.iter().map(|case| case.made_by.as_str()));
+        text.push('\n');
+        let sets = self.cases.iter().map(|case| (case.answer.effect.as_str(), &case.findings));
+        text += &report::confusion(sets);
+        text.push('\n');
+        text += &report::metric_table(&self.metrics);
+        text += &wrong_ones(&self.cases);
+        text += &closing(self.cases.len(), &self.failures, &self.metrics);
+        text
+    }
+
+    /// 0, or 3 where a bar is missed or a set failed.
+    pub fn exit_code(&self) -> u8 {
+        exit_code(&self.failures, &self.metrics)
+    }
+}
+
+/// Runs the suite, telling its progress line by line.
+///
+/// # Errors
+/// [`XtaskError`] where files cannot be written, programs not be started, or results kept earlier not be read.
+pub fn run(
+    root: &Path,
+    options: &Options<Selection>,
+    progress: impl Fn(&str) + Sync,
+) -> Result<RotorReport, XtaskError> {
+    let (hhc, folder) = set_up(root, options, "rotor-sets")?;
+    let sets = sets(&options.selection);
+    progress(&format!("{} sets, results in {}\n", sets.len(), folder.display()));
+    let tell = counted(sets.len(), &progress);
+    let one = |set: &RotorSet| run_set(&hhc, &folder, set, &tell);
+    let results = pool(options.threads)?
+        .install(|| sets.par_iter().with_max_len(1).map(one).collect::<Result<Vec<_>, _>>())?;
+    let cases = read_results(&folder)?;
+    Ok(RotorReport::of(cases, results.into_iter().flatten().collect()))
+}
+
+/// Diagnoses a set that was not done before and keeps its result; a failure where there are no findings.
+fn run_set(
+    hhc: &Hhc,
+    folder: &Path,
+    own: &RotorSet,
+    tell: &(impl Fn(&str) + Sync),
+) -> Result<Option<Failure>, XtaskError> {
+    let RotorSet { seed, effect, snr_db } = own;
+    let name = format!("{effect}_seed{seed}_{snr_db}dB");
+    let set = format!("{effect} seed {seed} at {snr_db} dB");
+    let kept = folder.join(format!("{name}.json"));
+    if kept.exists() {
+        let case: RotorCase = read_result(&kept)?;
+        tell(&format!("{set}: {}, done before", case.line()));
+        return Ok(None);
+    }
+    let place = folder.join("sets").join(&name);
+    let found = diagnosed(hhc, &place, own);
+    files::remove_folder(&place)?;
+    match found {
+        Ok(case) => {
+            keep_result(&kept, &case)?;
+            tell(&format!("{set}: {}", case.line()));
+            Ok(None)
+        }
+        Err(XtaskError::Refused { said, .. }) => {
+            tell(&format!("{set}: {said}"));
+            Ok(Some(Failure { set, said }))
+        }
+        Err(other) => Err(other),
+    }
+}
+
+fn diagnosed(hhc: &Hhc, place: &Path, set: &RotorSet) -> Result<RotorCase, XtaskError> {
+    let made = make(&Request {
+        seed: set.seed,
+        snr_db: set.snr_db,
+        effect: Some(set.effect.to_owned()),
+        size: None,
+        points: None,
+        base_error: true,
+        resolution: Resolution::default(),
+    });
+    let refused = |said: String| XtaskError::Refused { program: "rotor-truth".to_owned(), said };
+    let made = made.map_err(|error| refused(error.to_string()))?;
+    let answer = serde_json::to_value(&made.answer).and_then(serde_json::from_value);
+    let answer = answer.map_err(|error| refused(error.to_string()))?;
+    let files = [("sweep.csv".to_owned(), made.sweep_csv), ("case.ron".to_owned(), made.case_ron)];
+    write_folder(place, &files)?;
+    let (findings, seconds) = hhc.diagnose_points(place)?;
+    Ok(RotorCase { answer, findings, seconds, made_by: hhc.made_by().to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_effect_has_seeds_of_its_own() {
+        let of = |only: &str, seeds| {
+            sets(&Selection {
+                seeds,
+                first_block: 3,
+                snr_db: vec![40.0, 30.0],
+                only: only.to_owned(),
+            })
+        };
+        let all = of("", 2);
+        assert_eq!(all.len(), 4 * CATALOGUE.len());
+        let mut seeds: Vec<u64> = all.iter().map(|own| own.seed).collect();
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 2 * CATALOGUE.len());
+        assert!(seeds.iter().all(|seed| (30_000..40_000).contains(seed)));
+        assert!(of("mass", 3).iter().all(|own| own.effect == "mass"));
+        assert!(of("masses", 3).is_empty());
+    }
+}
