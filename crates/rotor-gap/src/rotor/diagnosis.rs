@@ -2,11 +2,13 @@
 
 use crate::error::RotorGapError;
 use crate::rotor::causes::{Occasion, RotorCause, library};
+use crate::rotor::feedback::{WonBack, won_back};
 use crate::rotor::flight::{Actuators, Flown, amplitude};
 use crate::rotor::model::RotorModel;
 use crate::rotor::spread::{alternatives, moved, stated};
 use crate::rotor::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
 use measured_data::Scatter;
+use model_gap::discovery::Verdict;
 use model_gap::points::{
     Channel, Grid, Instrument, KindFinding, KindQuestion, Point, PointFinding, PointKind,
     PointTable, channels_of,
@@ -20,6 +22,8 @@ use std::sync::Arc;
 
 /// Parts of the difference between the actuators that the lag is listed at.
 const LAG_PARTS: usize = 9;
+/// Part of the difference between the actuators by which hysteresis that was found may differ from that at hand.
+const AT_HAND: f64 = 0.25;
 /// Calibration of an instrument from one session to the next, standard deviation of its gain.
 const GAIN: f64 = 0.005;
 
@@ -56,6 +60,8 @@ pub struct RotorDiagnosis {
     pub alternatives: Vec<&'static str>,
     /// The case with what was found, if any of it is in a case.
     pub extended: Option<Case>,
+    /// What control reaches with hysteresis like that of the actuator at hand, where it was named.
+    pub won_back: Vec<WonBack>,
 }
 
 impl RotorDiagnosis {
@@ -114,8 +120,16 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         begun: question.begun,
     };
     let KindFinding { table, found, alternatives, extended } = asked.answer()?;
+    let is_at_hand = (extended.drive.hysteresis - 1.0).abs() < AT_HAND;
+    let won_back = match &question.hysteretic {
+        Some(hysteretic) if is_at_hand && found.finding.verdict == Verdict::Named => {
+            // a rotor that cannot be controlled here tells nothing
+            won_back(&extended, sweep, hysteretic).unwrap_or_default()
+        }
+        _ => Vec::new(),
+    };
     let extended = case_of(extended, &flights.model);
-    Ok(RotorDiagnosis { table, found, causes, aside, alternatives, extended })
+    Ok(RotorDiagnosis { table, found, causes, aside, alternatives, extended, won_back })
 }
 
 /// The case of an extended model; none where it is that of the model as it was.
@@ -254,7 +268,8 @@ impl PointKind for Flights<'_> {
         // an orbit of as many modes leads to another
         let has_modes = model.case.structure.modes == self.model.case.structure.modes;
         let near: Vec<&Flown> = self.flown.iter().collect();
-        let flown = model.fly(&points, &self.actuators, has_modes.then_some(&near[..]));
+        let near = has_modes.then(|| (&near[..], model.is_trimmed_as(&self.model)));
+        let flown = model.fly(&points, &self.actuators, near);
         let of_point = |(place, own): (usize, Result<Flown, StudyError>)| {
             own.map_err(|source| self.study_error(place, source))
                 .and_then(|own| read((place, &own)))

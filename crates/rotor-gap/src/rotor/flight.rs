@@ -227,14 +227,16 @@ impl RotorModel {
         Ok(Flown { trimmed: Arc::clone(trimmed), response, motions_deg, hub, scales })
     }
 
-    /// Flies points, `near` a rotor nearly like this one at each of them. Points that differ in their drives alone share
-    /// their trim.
+    /// Flies points, `near` a rotor nearly like this one at each of them, and whether it is trimmed as this one. Points that differ
+    /// in their drives alone share their trim.
     pub(crate) fn fly(
         &self,
         points: &[&SweepPoint],
         actuators: &Actuators,
-        near: Option<&[&Flown]>,
+        near: Option<(&[&Flown], bool)>,
     ) -> Vec<Result<Flown, StudyError>> {
+        let (near, is_trimmed_alike) =
+            near.map_or((None, false), |(own, alike)| (Some(own), alike));
         let mut first: Vec<usize> = Vec::new();
         let mut of_point = Vec::with_capacity(points.len());
         for (p, point) in points.iter().enumerate() {
@@ -244,8 +246,10 @@ impl RotorModel {
                 first.len() - 1
             }));
         }
-        let trim =
-            |p: usize| self.trim(points[p], near.map(|near| &*near[p].trimmed)).map(Arc::new);
+        let trim = |p: usize| match near {
+            Some(near) if is_trimmed_alike => Ok(Arc::clone(&near[p].trimmed)),
+            near => self.trim(points[p], near.map(|near| &*near[p].trimmed)).map(Arc::new),
+        };
         let trims: Vec<Option<Arc<Trimmed>>> = first.par_iter().map(|&p| trim(p).ok()).collect();
         let one = |(p, &point): (usize, &&SweepPoint)| {
             // one that failed fails again, and says why

@@ -7,11 +7,13 @@
 //! | that rotor at a point of test | `flight` |
 //! | the cause library: what a rotor may lack | `causes` |
 //! | inputs of a case that are not known well, other levels of fidelity | `spread` |
+//! | what hysteresis costs and feedback wins back | `feedback` |
 //! | a diagnosis | `diagnosis` |
 
 mod causes;
 mod columns;
 mod diagnosis;
+mod feedback;
 mod flight;
 mod model;
 mod spread;
@@ -20,6 +22,7 @@ mod sweep;
 pub use causes::{LIBRARY, RotorCause};
 pub use columns::{Column, Load, PartOf, Reading, Setting, check_columns};
 pub use diagnosis::{RotorDiagnosis, RotorQuestion, diagnose};
+pub use feedback::WonBack;
 pub use flight::predict;
 pub use model::{FlapDriveModel, LoadPath, RotorModel};
 pub(crate) use spread::in_percent;

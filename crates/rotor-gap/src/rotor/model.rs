@@ -1,7 +1,7 @@
 //! A rotor with its drives and the way its loads are read: what a cause changes.
 
 use rotor_base::Harmonic;
-use rotor_study::case::Case;
+use rotor_study::case::{Case, TrimValues};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
@@ -103,8 +103,19 @@ impl RotorModel {
 
     /// Whether another one flies alike: it differs in the way loads are read alone.
     pub fn flies_as(&self, other: &Self) -> bool {
-        let flown = |own: &Self| Self { path: LoadPath::default(), ..own.clone() };
-        flown(self) == flown(other)
+        self.drive == other.drive && self.is_trimmed_as(other)
+    }
+
+    /// Whether another one is trimmed alike, flaps at rest: it differs in drives and the way loads are read alone.
+    pub fn is_trimmed_as(&self, other: &Self) -> bool {
+        let trimmed = |own: &Self| {
+            // a collective that is set by a reading that is off is not the true one
+            let is_set = matches!(own.case.trim, TrimValues::Prescribed(_));
+            let collective_deg = if is_set { own.path.collective_deg } else { 0.0 };
+            let path = LoadPath { collective_deg, ..LoadPath::default() };
+            Self { drive: other.drive, path, ..own.clone() }
+        };
+        trimmed(self) == trimmed(other)
     }
 }
 

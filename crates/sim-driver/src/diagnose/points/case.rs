@@ -14,10 +14,10 @@ use preisach_dyn::identify::Settings;
 use rotor_gap::blade::{Frequencies, diagnose_blade, usual_blade_uncertain};
 use rotor_gap::section::{SectionLoads, diagnose_section};
 use rotor_gap::{
-    CaseQuestion, RotorGapError, RotorQuestion, Sweep, SweepPoint, diagnose, stated,
+    CaseQuestion, RotorGapError, RotorQuestion, Sweep, SweepPoint, WonBack, diagnose, stated,
     usual_uncertain,
 };
-use rotor_study::case::{ActuatorChoice, Case, UncertainField};
+use rotor_study::case::{ActuatorChoice, BenchFolder, Case, ControlValues, UncertainField};
 use std::sync::Arc;
 
 /// Name of the case that a diagnosis extended.
@@ -95,7 +95,15 @@ impl Asked<'_> {
         };
         let found = diagnose(&question).map_err(|e| self.located(e))?;
         let notes = found.notes(uncertain, from);
-        self.points("RotorSweep", found.table, found.found, (notes, found.extended))
+        let mut extended = found.extended;
+        if !found.won_back.is_empty() {
+            let own = extended.get_or_insert_with(|| case.clone());
+            own.actuator.model = ActuatorChoice::Bench(BenchFolder::default());
+            own.control.actuators = ControlValues::default().actuators;
+        }
+        let mut points = self.points("RotorSweep", found.table, found.found, (notes, extended))?;
+        points.diagnosis.besides = found.won_back.iter().map(WonBack::text).collect();
+        Ok(points)
     }
 
     fn blade(&self) -> Result<CasePoints, SimError> {
@@ -142,7 +150,7 @@ impl Asked<'_> {
         let extended = extended.map_err(|e| SimError::not_written(EXTENDED_CASE_FILE, &e))?;
         let title = self.data.title.clone();
         Ok(CasePoints {
-            diagnosis: PointDiagnosis { title, data_kind, table, found },
+            diagnosis: PointDiagnosis { title, data_kind, table, found, besides: vec![] },
             notes,
             extended,
         })

@@ -24,6 +24,8 @@ pub struct PointDiagnosis {
     pub table: PointTable,
     /// What was found.
     pub found: PointFinding,
+    /// What it means besides, in sentences.
+    pub besides: Vec<String>,
 }
 
 impl PointDiagnosis {
@@ -46,7 +48,7 @@ impl PointDiagnosis {
             [] => table.find(),
             given => table.refit(given),
         };
-        Ok(Self { title, data_kind, found: found.map_err(at)?, table })
+        Ok(Self { title, data_kind, found: found.map_err(at)?, table, besides: vec![] })
     }
 
     fn id(&self, candidate: usize) -> &'static str {
@@ -239,6 +241,9 @@ impl<'a> PointStory<'a> {
         let mut sheet = Sheet::default();
         self.own.causes(&mut sheet);
         seen(&self.findings, &mut sheet);
+        for own in &self.own.besides {
+            sheet.line(format_args!("  {own}"));
+        }
         self.own.gains(most, &mut sheet);
         self.own.next(&mut sheet);
         sheet.line("");
