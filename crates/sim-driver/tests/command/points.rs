@@ -201,3 +201,84 @@ fn a_sweep_of_a_rotor_is_imported_checked_and_diagnosed() {
         .rejected(&["case.ron:3", "`rotor.gk`"]);
     place.hhc(&["identify", "data", "-o", "a.ron"]).rejected(&["identify no actuator"]);
 }
+
+/// The default blade, its `EI_flap` a fifth lower, as exact theory has it at rest: `lambda^2 sqrt(EI) / 2 pi`, in units of the rotor
+/// speed of 383 rpm.
+#[test]
+fn frequencies_of_a_blade_are_imported_checked_and_diagnosed() {
+    let place = Place::new();
+    place.write("case.ron", "(title: \"blade\", rotor: (twist_deg: 0))");
+    let mut text = String::from("rotor_speed_rpm,mode,frequency_hz,frequency_sd_hz\n");
+    for (n, lambda) in [1.875_104, 4.694_091, 7.854_757].into_iter().enumerate() {
+        for (kind, stiffness) in [("flap", 0.8 * 0.0108_f64), ("lag", 0.0268)] {
+            let hz = lambda * lambda * stiffness.sqrt() * 383.0 / 60.0;
+            writeln!(text, "0,{kind} {},{hz},{}", n + 1, 0.003 * hz).unwrap();
+        }
+    }
+    place.write("frequencies.csv", &text);
+    let told = place.hhc(&["import", "frequencies.csv", "-o", "data"]).done();
+    assert!(told.contains("kind BladeFrequencies"), "{told}");
+    let checked = place.hhc(&["check", "data", "--format", "json"]).json();
+    assert_eq!(checked["kind"], "blade_frequencies");
+    let told = place.hhc(&["diagnose", "case.ron", "--data", "data", "-o", "out"]).done();
+    assert!(told.lines().count() <= 40, "{told}");
+    let found: serde_json::Value = serde_json::from_str(&place.read("out/findings.json")).unwrap();
+    assert_eq!(found["data_kind"], "BladeFrequencies");
+    let ratio = found["parameters"]["stiffness-flap"]["ratio"]["value"].as_f64().unwrap();
+    assert!((ratio - 0.8).abs() < 0.03, "{told}");
+    place.write("bad.csv", &text.replace("lag 2", "edge 2"));
+    place.hhc(&["import", "bad.csv", "-o", "bad"]).done();
+    place.hhc(&["check", "bad"]).rejected(&["bad/points.csv:1", "`edge 2` is no mode"]);
+}
+
+/// An oscillating flap that makes four fifths of the lift that the same program says of it.
+#[test]
+fn loads_of_a_section_are_imported_checked_and_diagnosed() {
+    let place = Place::new();
+    place.write("case.ron", "(title: \"section\")");
+    let mut text = String::from("motion,mach,reduced_frequency,frequency_hz");
+    for name in ["cn_re", "cn_im", "cm_re", "cm_im"] {
+        write!(text, ",{name},{name}_sd").unwrap();
+    }
+    for k in [0.05, 0.1, 0.2, 0.4] {
+        let reduced = k.to_string();
+        let said = place.hhc(&[
+            "section",
+            "--model",
+            "calibrated",
+            "--mach",
+            "0.5",
+            "--flap-chord",
+            "0.2",
+            "--motion",
+            "flap",
+            "--reduced-frequency",
+            &reduced,
+            "--format",
+            "json",
+        ]);
+        let said = said.json();
+        write!(text, "\nflap,0.5,{k},{}", 100.0 * k).unwrap();
+        for (load, factor) in [("cn", 0.8), ("cm", 1.0)] {
+            for part in 0..2 {
+                let value = factor * said[load][part].as_f64().unwrap();
+                write!(text, ",{value},0.01").unwrap();
+            }
+        }
+    }
+    text.push('\n');
+    place.write("loops.csv", &text);
+    let told = place.hhc(&["import", "loops.csv", "-o", "data"]).done();
+    assert!(told.contains("kind SectionLoops"), "{told}");
+    let checked = place.hhc(&["check", "data", "--format", "json"]).json();
+    assert_eq!(checked["kind"], "section_loops");
+    let told = place.hhc(&["diagnose", "case.ron", "--data", "data", "-o", "out"]).done();
+    assert!(
+        told.contains("flap-effectiveness") && told.contains("rejected in its place"),
+        "{told}"
+    );
+    let found: serde_json::Value = serde_json::from_str(&place.read("out/findings.json")).unwrap();
+    let lift = found["parameters"]["flap-effectiveness"]["lift"]["value"].as_f64().unwrap();
+    assert!((lift - 0.8).abs() < 0.02, "{told}");
+    assert!(place.read("out/extended_case.ron").contains("lift"));
+}

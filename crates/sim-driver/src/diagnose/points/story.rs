@@ -5,13 +5,15 @@ use crate::diagnose::story::{one_of, screening, sure, valued};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, json, table_of, unique};
 use crate::problem::Place;
-use model_gap::discovery::{Found, Verdict};
+use model_gap::discovery::{Compared, Found, Verdict};
 use model_gap::points::{ChannelGain, PointFinding, PointTable};
 use model_gap::{Findings, GapError, places};
 use serde::Serialize;
 
 /// Rows of a table on the first screen.
 const SHOWN: usize = 6;
+/// Rejected rivals that are told, the nearest first.
+const REJECTED: usize = 4;
 
 /// Points of test with what was found of them.
 #[derive(Debug, Clone)]
@@ -117,6 +119,19 @@ impl PointDiagnosis {
                     self.id(other.candidate),
                     other.delta_chi2,
                     other.discrimination_threshold
+                ));
+            }
+            let mut out: Vec<&Compared> =
+                found.compared.iter().filter(|other| !other.is_as_likely()).collect();
+            out.sort_by(|a, b| a.delta_chi2.total_cmp(&b.delta_chi2));
+            let rejected = |other: &&Compared| {
+                format!("{} by {:.0}", self.id(other.candidate), other.delta_chi2)
+            };
+            let out: Vec<String> = out.iter().take(REJECTED).map(rejected).collect();
+            if !out.is_empty() {
+                sheet.line(format_args!(
+                    "    rejected in its place, chi-square higher: {}",
+                    out.join(", ")
                 ));
             }
         }
