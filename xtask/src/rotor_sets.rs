@@ -16,10 +16,9 @@ use score::rotor::{RotorCase, metrics, wrong_ones};
 
 use crate::XtaskError;
 use crate::diagnosis::{
-    Failure, Hhc, Options, closing, counted, exit_code, keep_result, makers, pool, read_result,
+    Failure, Hhc, Options, SetName, closing, counted, exit_code, kept_or_made, makers, pool,
     read_results, set_up, write_folder,
 };
-use crate::files;
 use crate::hidden_effects::Selection;
 
 /// Seeds of a block, and of an effect in it.
@@ -106,44 +105,20 @@ pub fn run(
     let sets = sets(&options.selection);
     progress(&format!("{} sets, results in {}\n", sets.len(), folder.display()));
     let tell = counted(sets.len(), &progress);
-    let one = |set: &RotorSet| run_set(&hhc, &folder, set, &tell);
+    let one = |set: &RotorSet| {
+        let RotorSet { seed, effect, snr_db } = set;
+        let told = format!("{effect} seed {seed} at {snr_db} dB");
+        let file = format!("{effect}_seed{seed}_{snr_db}dB");
+        let telling = (RotorCase::line as fn(&RotorCase) -> String, &tell);
+        kept_or_made(&folder, SetName { told, file }, telling, |place| diagnosed(&hhc, place, set))
+    };
     let results = pool(options.threads)?
         .install(|| sets.par_iter().with_max_len(1).map(one).collect::<Result<Vec<_>, _>>())?;
-    let cases = read_results(&folder)?;
+    let mut cases: Vec<RotorCase> = read_results(&folder)?;
+    let Selection { only, snr_db, .. } = &options.selection;
+    cases.retain(|own| only.is_empty() || own.answer.effect == *only);
+    cases.retain(|own| snr_db.iter().any(|snr| (snr - own.answer.snr_db).abs() < 1e-9));
     Ok(RotorReport::of(cases, results.into_iter().flatten().collect()))
-}
-
-/// Diagnoses a set that was not done before and keeps its result; a failure where there are no findings.
-fn run_set(
-    hhc: &Hhc,
-    folder: &Path,
-    own: &RotorSet,
-    tell: &(impl Fn(&str) + Sync),
-) -> Result<Option<Failure>, XtaskError> {
-    let RotorSet { seed, effect, snr_db } = own;
-    let name = format!("{effect}_seed{seed}_{snr_db}dB");
-    let set = format!("{effect} seed {seed} at {snr_db} dB");
-    let kept = folder.join(format!("{name}.json"));
-    if kept.exists() {
-        let case: RotorCase = read_result(&kept)?;
-        tell(&format!("{set}: {}, done before", case.line()));
-        return Ok(None);
-    }
-    let place = folder.join("sets").join(&name);
-    let found = diagnosed(hhc, &place, own);
-    files::remove_folder(&place)?;
-    match found {
-        Ok(case) => {
-            keep_result(&kept, &case)?;
-            tell(&format!("{set}: {}", case.line()));
-            Ok(None)
-        }
-        Err(XtaskError::Refused { said, .. }) => {
-            tell(&format!("{set}: {said}"));
-            Ok(Some(Failure { set, said }))
-        }
-        Err(other) => Err(other),
-    }
 }
 
 fn diagnosed(hhc: &Hhc, place: &Path, set: &RotorSet) -> Result<RotorCase, XtaskError> {

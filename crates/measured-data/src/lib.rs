@@ -19,8 +19,8 @@ pub use dataset::{
     Accuracy, BenchData, ChannelAccuracy, CurveData, CurveRun, DATASET, DEFAULT_COMMAND_RANGE_VOLT,
     DataSet, DatasetFile, DatasetKind, DisplacementAccuracy, EffectFile, EffectTables, Fitting,
     LoopData, PointColumn, PointData, ReversalCurve, Run, RunFile, RunRole, Scatter, Sensor,
-    SweepData, VoltageAccuracy, read_bench, read_curves, read_dataset, read_effect_tables,
-    read_loops, read_sweep,
+    SweepData, VoltageAccuracy, dataset_kind, read_bench, read_curves, read_dataset,
+    read_effect_tables, read_loops, read_sweep,
 };
 pub use error::DataError;
 pub use files::{

@@ -12,6 +12,7 @@
 pub mod blade;
 mod diagnosis;
 mod error;
+mod properties;
 pub mod rotor;
 pub mod section;
 mod table;

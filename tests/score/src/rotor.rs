@@ -28,6 +28,8 @@ pub struct RotorAnswer {
     pub in_library: bool,
     /// Seed.
     pub seed: u64,
+    /// Noise below the readings, dB.
+    pub snr_db: f64,
 }
 
 /// What a program said about one set, beside the answer.
@@ -162,7 +164,7 @@ mod tests {
         });
         let in_library = effect != "wall-upwash";
         let answer = json!({
-            "effect": effect, "parameters": { "ratio": 0.91 }, "in_library": in_library, "seed": 1,
+            "effect": effect, "parameters": { "ratio": 0.91 }, "in_library": in_library, "seed": 1, "snr_db": 40.0,
         });
         RotorCase {
             answer: serde_json::from_value(answer).unwrap(),

@@ -229,6 +229,42 @@ pub(crate) fn write_folder(folder: &Path, content: &[(String, String)]) -> Resul
     Ok(())
 }
 
+/// A set of a suite: its name in reports, and that of its files.
+pub(crate) struct SetName {
+    pub(crate) told: String,
+    pub(crate) file: String,
+}
+
+/// Makes the result of a set that was not made before, in a folder that is gone afterwards, keeps it and tells its line; a
+/// failure where there are no findings.
+pub(crate) fn kept_or_made<T: Serialize + DeserializeOwned>(
+    folder: &Path,
+    SetName { told, file }: SetName,
+    (line, tell): (fn(&T) -> String, &(impl Fn(&str) + Sync)),
+    made: impl FnOnce(&Path) -> Result<T, XtaskError>,
+) -> Result<Option<Failure>, XtaskError> {
+    let kept = folder.join(format!("{file}.json"));
+    if kept.exists() {
+        tell(&format!("{told}: {}, done before", line(&read_result(&kept)?)));
+        return Ok(None);
+    }
+    let place = folder.join("sets").join(file);
+    let found = made(&place);
+    files::remove_folder(&place)?;
+    match found {
+        Ok(result) => {
+            keep_result(&kept, &result)?;
+            tell(&format!("{told}: {}", line(&result)));
+            Ok(None)
+        }
+        Err(XtaskError::Refused { said, .. }) => {
+            tell(&format!("{told}: {said}"));
+            Ok(Some(Failure { set: told, said }))
+        }
+        Err(other) => Err(other),
+    }
+}
+
 /// A result kept.
 pub(crate) fn read_result<T: DeserializeOwned>(path: &Path) -> Result<T, XtaskError> {
     serde_json::from_str(&files::read(path)?)

@@ -16,10 +16,9 @@ use score::report;
 
 use crate::XtaskError;
 use crate::diagnosis::{
-    Failure, Hhc, Options, closing, counted, exit_code, keep_result, makers, pool, read_result,
+    Failure, Hhc, Options, SetName, closing, counted, exit_code, kept_or_made, makers, pool,
     read_results, set_up, write_folder,
 };
-use crate::files;
 
 /// A choice of sets.
 #[derive(Debug, Clone, PartialEq)]
@@ -102,44 +101,20 @@ pub fn run(
     let total = requests.len();
     progress(&format!("{total} sets, results in {}\n", folder.display()));
     let tell = counted(total, &progress);
-    let one = |request: &Request| run_set(&hhc, &folder, request, &tell);
+    let one = |request: &Request| {
+        let (family, seed) = (request.family.id(), request.seed);
+        let told = format!("{family} seed {seed}");
+        let file = format!("{family}_seed{seed}_{}", request.hidden.id());
+        let telling = (EverydayCase::line as fn(&EverydayCase) -> String, &tell);
+        kept_or_made(&folder, SetName { told, file }, telling, |bench| {
+            diagnosed(&hhc, bench, request)
+        })
+    };
     let results = pool(options.threads)?
         .install(|| requests.par_iter().with_max_len(1).map(one).collect::<Result<Vec<_>, _>>())?;
     let mut cases: Vec<EverydayCase> = read_results(&folder)?;
     cases.retain(|case| options.selection.admits(case));
     Ok(EverydayReport::of(cases, results.into_iter().flatten().collect()))
-}
-
-/// Diagnoses a set that was not done before and keeps its result; a failure where there are no findings.
-fn run_set(
-    hhc: &Hhc,
-    folder: &Path,
-    request: &Request,
-    tell: &(impl Fn(&str) + Sync),
-) -> Result<Option<Failure>, XtaskError> {
-    let name = format!("{}_seed{}_{}", request.family.id(), request.seed, request.hidden.id());
-    let set = format!("{} seed {}", request.family.id(), request.seed);
-    let kept = folder.join(format!("{name}.json"));
-    if kept.exists() {
-        let case: EverydayCase = read_result(&kept)?;
-        tell(&format!("{set}: {}, done before", case.line()));
-        return Ok(None);
-    }
-    let bench = folder.join("bench").join(&name);
-    let found = diagnosed(hhc, &bench, request);
-    files::remove_folder(&bench)?;
-    match found {
-        Ok(case) => {
-            keep_result(&kept, &case)?;
-            tell(&format!("{set}: {}", case.line()));
-            Ok(None)
-        }
-        Err(XtaskError::Refused { said, .. }) => {
-            tell(&format!("{set}: {}: {said}", request.hidden.id()));
-            Ok(Some(Failure { set, said }))
-        }
-        Err(other) => Err(other),
-    }
 }
 
 fn diagnosed(hhc: &Hhc, bench: &Path, request: &Request) -> Result<EverydayCase, XtaskError> {

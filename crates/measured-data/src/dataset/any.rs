@@ -42,15 +42,20 @@ impl DataSet {
     }
 }
 
+/// The kind of a data folder; none where its `dataset.ron` cannot be read.
+pub fn dataset_kind(folder: &Folder) -> Option<DatasetKind> {
+    let source = read_description(folder).ok()?;
+    read_ron::<DatasetFile>(&source).value.map(|file| file.kind)
+}
+
 /// Reads a data folder of any kind.
 ///
 /// # Errors
 /// Every problem of `dataset.ron` and of every record, ordered by file and line.
 pub fn read_dataset(folder: &Folder) -> Result<DataSet, Problems> {
-    let source = read_description(folder)?;
+    read_description(folder)?;
     // a kind that cannot be read is reported by the reader of benches
-    let kind = read_ron::<DatasetFile>(&source).value.map(|file| file.kind);
-    match kind {
+    match dataset_kind(folder) {
         Some(DatasetKind::GenericLoop) => read_loops(folder).map(DataSet::Loops),
         Some(DatasetKind::ReversalCurves) => read_curves(folder).map(DataSet::Curves),
         Some(DatasetKind::ActuatorBench) | None => read_bench(folder).map(DataSet::Bench),

@@ -13,7 +13,7 @@ mod run;
 mod sweep;
 
 pub use accuracy::{Accuracy, DisplacementAccuracy, VoltageAccuracy};
-pub use any::{DataSet, read_dataset};
+pub use any::{DataSet, dataset_kind, read_dataset};
 pub use bench::{BenchData, read_bench};
 pub(crate) use bench::{check_bench_record, monitor_volts, range_unused};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};

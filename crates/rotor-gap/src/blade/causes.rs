@@ -1,9 +1,10 @@
 //! What a blade may lack.
 
 use super::BladeModel;
+use crate::properties;
 use model_gap::points::{CauseParameter, PointCause, Shown};
 use rotor_fem::Joint;
-use rotor_study::case::{Case, RotorValues, times};
+use rotor_study::case::{Case, times};
 
 /// A cause, ready for one blade.
 pub type BladeCause = PointCause<BladeModel>;
@@ -20,56 +21,22 @@ pub const BLADE_LIBRARY: [&str; 8] = [
     "mass",
 ];
 
-const STEPS: [f64; 3] = [1.05, 0.9, 1.25];
-const RANGE: (f64, f64) = (0.4, 2.5);
 /// Part of the radius that a mass at the tip is spread over, all the more of it the further out.
 const TIP: f64 = 0.02;
 const AT_REST: &[&str] = &["frequencies at rest", "frequencies at other rotor speeds"];
 
-/// A property of the blade, uniform and as a table.
-type Property<'a> = (&'a mut f64, &'a mut Vec<(f64, f64)>);
-
-fn stiffness(
-    id: &'static str,
-    physics: &'static str,
-    of: fn(&mut RotorValues) -> Property<'_>,
-) -> BladeCause {
-    PointCause::new(
-        id,
-        physics,
-        vec![CauseParameter::ratio(&STEPS, RANGE)],
-        move |m: &mut BladeModel, v| {
-            let (uniform, table) = of(&mut m.case.rotor);
-            times(uniform, table, v[0]);
-        },
-    )
-    .beside(&["mass", "root-compliance"], AT_REST)
-}
-
 /// The causes of a blade.
 pub(super) fn library(model: &BladeModel) -> Vec<BladeCause> {
-    vec![
-        stiffness(
-            "stiffness-flap",
-            "the blade bends more or less easily out of the plane: EI_flap times a ratio",
-            |r| (&mut r.ei_flap, &mut r.tables.ei_flap),
-        ),
-        stiffness(
-            "stiffness-lag",
-            "the blade bends more or less easily in the plane: EI_lag times a ratio",
-            |r| (&mut r.ei_lag, &mut r.tables.ei_lag),
-        ),
-        stiffness(
-            "stiffness-torsion",
-            "the blade twists more or less easily: GJ times a ratio",
-            |r| (&mut r.gj, &mut r.tables.gj),
-        ),
-        root_offset(),
-        rotor_speed(),
-        tip_mass(model),
-        root_compliance(model),
-        mass(),
-    ]
+    let stiffnesses = [
+        properties::stiffness_flap(),
+        properties::stiffness_lag(),
+        properties::stiffness_torsion(),
+    ];
+    let mut all: Vec<BladeCause> =
+        stiffnesses.map(|own| own.beside(&["mass", "root-compliance"], AT_REST)).to_vec();
+    all.extend([root_offset(), rotor_speed(), tip_mass(model), root_compliance(model)]);
+    all.push(properties::mass().beside(&["stiffness-flap"], &["the weight of the blade"]));
+    all
 }
 
 /// A blade of the same length whose root lies further out; all that a case holds is over the radius.
@@ -84,9 +51,13 @@ fn further_out(case: &mut Case, offset_r: f64) {
         times(uniform, table, fourth);
     }
     times(&mut r.ea, &mut t.ea, second);
-    for (uniform, table) in
-        [(&mut r.km1_r, &mut t.km1_r), (&mut r.km2_r, &mut t.km2_r), (&mut r.ka_r, &mut t.ka_r)]
-    {
+    for (uniform, table) in [
+        (&mut r.km1_r, &mut t.km1_r),
+        (&mut r.km2_r, &mut t.km2_r),
+        (&mut r.ka_r, &mut t.ka_r),
+        (&mut r.chord_r, &mut t.chord_r),
+        (&mut r.mass_centre_r, &mut t.set_back_r),
+    ] {
         times(uniform, table, 1.0 / longer);
     }
     for table in [
@@ -111,9 +82,18 @@ fn further_out(case: &mut Case, offset_r: f64) {
             *stiffness *= longer.powi(-3);
         }
     }
-    r.chord_r /= longer;
+    for length in [&mut r.tension_centre_r, &mut r.aerodynamic_centre_r, &mut r.torque_offset_r] {
+        *length /= longer;
+    }
     r.root_offset_r = (r.root_offset_r + offset_r) / longer;
+    // over a longer radius the same twist per length is more
+    r.twist_deg *= longer;
     r.radius_m *= longer;
+    for flap in &mut case.flaps {
+        for station in [&mut flap.start_r, &mut flap.end_r] {
+            *station = (*station + offset_r) / longer;
+        }
+    }
 }
 
 fn root_offset() -> BladeCause {
@@ -172,54 +152,42 @@ fn tip_mass(model: &BladeModel) -> BladeCause {
     .beside(&["stiffness-flap", "mass"], &["the weight of the blade and its centre"])
 }
 
-/// The compliance of the root in flap is what adds up; its reciprocal is reported.
 fn root_compliance(model: &BladeModel) -> BladeCause {
     let physics = "the root gives way in flap bending: a spring in place of a clamp";
-    let unit_newton_metre = model.case.scales().moment_newton_metre();
-    let joint = model.case.rotor.root.flap;
-    let none = match joint {
-        Joint::Spring { stiffness } => 1.0 / (stiffness * unit_newton_metre),
-        _ => 0.0,
-    };
+    let case = &model.case;
     // what a fiftieth of the blade gives in bending
-    let give = 0.02 / (model.case.rotor.ei_flap * unit_newton_metre);
-    let parameter = CauseParameter {
-        name: "stiffness",
-        unit: "N m/rad",
-        none,
-        range: (0.0, none + 50.0 * give),
-        amounts: vec![none + give, none + 4.0 * give],
-        shown: Shown::Reciprocal,
-    };
-    PointCause::new("root-compliance", physics, vec![parameter], move |m: &mut BladeModel, v| {
-        let is_same = v[0] - none == 0.0;
-        if !is_same {
-            let compliance = v[0] * unit_newton_metre;
-            m.case.rotor.root.flap = if compliance > 0.0 {
-                Joint::Spring { stiffness: 1.0 / compliance }
-            } else {
-                Joint::Locked
-            };
-        }
-    })
-    .beside(
+    let give = 0.02 / (case.rotor.ei_flap * case.scales().moment_newton_metre());
+    let named = ("root-compliance", physics);
+    properties::root_spring(named, model, |r| &mut r.root.flap, (give, &[1.0, 4.0])).beside(
         &["stiffness-flap"],
         &["a static load at the root", "frequencies of the third mode and above"],
     )
-    .blocked_if(joint == Joint::Free, "the blade hangs on a hinge")
 }
 
-/// The stiffnesses are over the mass.
-fn mass() -> BladeCause {
-    let physics = "the blade is heavier or lighter: mass per length times a ratio";
-    PointCause::new(
-        "mass",
-        physics,
-        vec![CauseParameter::ratio(&STEPS, RANGE)],
-        |m: &mut BladeModel, v| {
-            m.case.rotor.stiffen(1.0 / v[0]);
-            m.case.rotor.mass_kg_m *= v[0];
-        },
-    )
-    .beside(&["stiffness-flap"], &["the weight of the blade"])
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rotor_study::{AboutState, ModesQuestion, modes_at_speeds};
+
+    /// A clamped blade of the same length sounds alike at rest wherever its root is, and higher when it turns further out.
+    #[test]
+    fn a_blade_further_out_is_the_same_blade() {
+        let mut model =
+            BladeModel { case: Case::default(), speed: 1.0, about: AboutState::Undeformed };
+        model.case.rotor.tables.mass = vec![(0.0, 1.2), (0.6, 1.0), (1.0, 0.9)];
+        let hz = |case: &Case| -> Vec<f64> {
+            let question =
+                ModesQuestion { about: AboutState::Undeformed, ..ModesQuestion::default() };
+            let found = modes_at_speeds(case, &question, &[0.0, 1.0]).unwrap();
+            found.iter().flat_map(|own| own.modes.iter().map(|mode| mode.hz)).collect()
+        };
+        let own = hz(&model.case);
+        let out = root_offset().applied(&model, &[0.06]);
+        let out = hz(&out.case);
+        let half = own.len() / 2;
+        for (a, b) in own[..half].iter().zip(&out[..half]) {
+            assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
+        }
+        assert!(out[half] > 1.01 * own[half], "{} {}", out[half], own[half]);
+    }
 }

@@ -14,6 +14,7 @@ pub use frequencies::Frequencies;
 
 use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
 use crate::error::RotorGapError;
+use crate::properties::OfCase;
 use crate::rotor::moved;
 use measured_data::Scatter;
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
@@ -35,6 +36,16 @@ pub struct BladeModel {
     pub speed: f64,
     /// State whose small motions the modes are.
     pub about: AboutState,
+}
+
+impl OfCase for BladeModel {
+    fn case(&self) -> &Case {
+        &self.case
+    }
+
+    fn case_mut(&mut self) -> &mut Case {
+        &mut self.case
+    }
 }
 
 /// The modes that were measured, of any blade.

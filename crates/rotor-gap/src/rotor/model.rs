@@ -1,5 +1,6 @@
 //! A rotor with its drives and the way its loads are read: what a cause changes.
 
+use crate::properties::OfCase;
 use rotor_base::Harmonic;
 use rotor_study::case::{Case, TrimValues};
 use std::collections::BTreeMap;
@@ -80,6 +81,16 @@ pub struct LoadPath {
     pub collective_deg: f64,
     /// Gains of instruments that are off, by their names.
     pub gains: BTreeMap<String, f64>,
+}
+
+impl OfCase for RotorModel {
+    fn case(&self) -> &Case {
+        &self.case
+    }
+
+    fn case_mut(&mut self) -> &mut Case {
+        &mut self.case
+    }
 }
 
 impl RotorModel {

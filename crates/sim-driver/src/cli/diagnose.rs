@@ -11,14 +11,14 @@ use crate::diagnose::{
     usual_runs,
 };
 use crate::files::{
-    DATASET, DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
+    DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
     write_atomic,
 };
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{read_actuator, write_actuator};
-use measured_data::{Accuracy, DatasetKind};
+use measured_data::{Accuracy, DatasetKind, dataset_kind};
 use preisach_dyn::ActuatorModel;
 use rotor_gap::{TableData, read_table};
 use std::path::{Path, PathBuf};
@@ -63,10 +63,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
 /// The points of a folder; none of another kind of data.
 fn points_of(data: &Path) -> Result<Option<SweepData>, SimError> {
     let folder = Folder::Disk(data.to_path_buf());
-    let Ok(source) = folder.read(DATASET) else { return Ok(None) };
-    let is_named = |own: &(DatasetKind, &[&str])| source.text.contains(&format!("{:?}", own.0));
-    let kind = DatasetKind::OF_POINTS.into_iter().find(is_named);
-    Ok(kind.map(|(kind, _)| read_sweep(&folder, kind)).transpose()?)
+    let kind = dataset_kind(&folder);
+    let is_of_points = |own: &DatasetKind| DatasetKind::OF_POINTS.iter().any(|of| of.0 == *own);
+    Ok(kind.filter(is_of_points).map(|kind| read_sweep(&folder, kind)).transpose()?)
 }
 
 /// Says what the simulation of a case lacks, from points of test.

@@ -1,97 +1,40 @@
 //! What the blades may lack.
 
 use super::{Occasion, RotorCause};
+use crate::properties;
 use crate::rotor::model::RotorModel;
 use model_gap::points::{CauseParameter, Shown};
-use rotor_fem::Joint;
-use rotor_study::case::{CouplingsChoice, DissimilarBlade, RotorValues, times};
+use rotor_study::case::{CouplingsChoice, DissimilarBlade};
 
-const STIFF: (f64, f64) = (0.4, 2.0);
-/// A mode near a harmonic answers far from straight: several amounts on both sides.
-const STEPS: [f64; 3] = [1.05, 0.85, 1.2];
 const SWEEP_OF_SPEED: &[&str] = &["points at other rotor speeds", "blade frequencies at rest"];
 
-/// A property of the blade, uniform and as a table.
-type Property<'a> = (&'a mut f64, &'a mut Vec<(f64, f64)>);
-
-/// A stiffness times a ratio; `of` gives it, uniform and as a table.
-fn stiffness(
-    id: &'static str,
-    physics: &'static str,
-    of: fn(&mut RotorValues) -> Property<'_>,
-) -> RotorCause {
-    let parameters = vec![CauseParameter::ratio(&STEPS, STIFF)];
-    RotorCause::new(id, physics, parameters, move |m, v| {
-        let (uniform, table) = of(&mut m.case.rotor);
-        times(uniform, table, v[0]);
-    })
-}
-
 pub(super) fn stiffness_flap() -> RotorCause {
-    let physics = "the blade bends more or less easily out of the plane: EI_flap times a ratio";
-    stiffness("stiffness-flap", physics, |r| (&mut r.ei_flap, &mut r.tables.ei_flap))
-        .beside(&["mass"], SWEEP_OF_SPEED)
+    properties::stiffness_flap().beside(&["mass"], SWEEP_OF_SPEED)
 }
 
 pub(super) fn stiffness_lag() -> RotorCause {
-    let physics = "the blade bends more or less easily in the plane: EI_lag times a ratio";
-    stiffness("stiffness-lag", physics, |r| (&mut r.ei_lag, &mut r.tables.ei_lag))
-        .beside(&["mass"], SWEEP_OF_SPEED)
+    properties::stiffness_lag().beside(&["mass"], SWEEP_OF_SPEED)
 }
 
 pub(super) fn stiffness_torsion() -> RotorCause {
-    let physics = "the blade twists more or less easily: GJ times a ratio";
-    stiffness("stiffness-torsion", physics, |r| (&mut r.gj, &mut r.tables.gj)).beside(
+    properties::stiffness_torsion().beside(
         &["pitch-link", "aerodynamic-centre"],
         &["a static load at the pitch horn", "twist along the span"],
     )
 }
 
-/// The compliance of the pitch bearing is what adds up; its reciprocal is reported.
 pub(super) fn pitch_link(o: &Occasion<'_>) -> RotorCause {
     let physics = "pitch link and control system give way: a spring at the root in pitch";
-    let unit_newton_metre = o.model.case.scales().moment_newton_metre();
-    let none = match o.model.case.rotor.root.feather {
-        Joint::Spring { stiffness } => 1.0 / (stiffness * unit_newton_metre),
-        _ => 0.0,
-    };
+    let case = &o.model.case;
     // softer by a twentieth of what gj gives over the radius
-    let give = 0.05 / (o.model.case.rotor.gj * unit_newton_metre);
-    let parameter = CauseParameter {
-        name: "stiffness",
-        unit: "N m/rad",
-        none,
-        range: (0.0, none + 40.0 * give),
-        amounts: vec![none + give],
-        shown: Shown::Reciprocal,
-    };
-    RotorCause::new("pitch-link", physics, vec![parameter], move |m, v| {
-        let is_same = v[0] - none == 0.0;
-        if !is_same {
-            let compliance = v[0] * unit_newton_metre;
-            m.case.rotor.root.feather = if compliance > 0.0 {
-                Joint::Spring { stiffness: 1.0 / compliance }
-            } else {
-                Joint::Locked
-            };
-        }
-    })
-    .beside(&["stiffness-torsion"], &["a static load at the pitch horn"])
+    let give = 0.05 / (case.rotor.gj * case.scales().moment_newton_metre());
+    let named = ("pitch-link", physics);
+    properties::root_spring(named, o.model, |r| &mut r.root.feather, (give, &[1.0]))
+        .beside(&["stiffness-torsion"], &["a static load at the pitch horn"])
 }
 
-/// The stiffnesses are over the mass, and so is the Lock number.
 pub(super) fn mass() -> RotorCause {
-    let physics = "the blades are heavier or lighter: mass per length times a ratio";
-    let parameters = vec![CauseParameter::ratio(&[1.03, 0.95, 1.1], (0.7, 1.4))];
-    RotorCause::new("mass", physics, parameters, |m, v| {
-        let r = &mut m.case.rotor;
-        let lighter = 1.0 / v[0];
-        r.stiffen(lighter);
-        r.lag_damper *= lighter;
-        r.lock_number *= lighter;
-        r.mass_kg_m *= v[0];
-    })
-    .beside(&["air-density", "lift-slope"], &["the weight of a blade"])
+    properties::mass().beside(&["air-density", "lift-slope"], &["the weight of a blade"])
 }
 
 pub(super) fn cg_offset(o: &Occasion<'_>) -> RotorCause {
