@@ -138,13 +138,14 @@ impl Number for Lanes {
         let turns = (self * FRAC_2_PI).map(f64::round_ties_even);
         let y = self - turns * FRAC_PI_2 - turns * PI_HALVES_REST;
         let square = y * y;
-        let series = |first: u32| {
-            // 1 - y^2/((n+1)(n+2)) (1 - y^2/((n+3)(n+4)) (...)), up to y^16
-            let terms =
-                (0..8_u32).rev().map(|k| first + 2 * k).map(|n| f64::from((n + 1) * (n + 2)));
-            terms.fold(Self::of(1.0), |sum, divisor| -(square * (1.0 / divisor)) * sum + 1.0)
-        };
-        let (sin, cos) = (y * series(1), series(0));
+        // 1 - y^2/((n+1)(n+2)) (1 - y^2/((n+3)(n+4)) (...)), up to y^16
+        let (mut of_sin, mut of_cos) = (Self::of(1.0), Self::of(1.0));
+        for k in (0..8_u32).rev() {
+            let over = |n: u32| 1.0 / f64::from((n + 1) * (n + 2));
+            of_sin = -(square * over(2 * k + 1)) * of_sin + 1.0;
+            of_cos = -(square * over(2 * k)) * of_cos + 1.0;
+        }
+        let (sin, cos) = (y * of_sin, of_cos);
         // by quarter turns: (s, c), (c, -s), (-s, -c), (-c, s)
         let quarter = turns - (turns * 0.25).map(f64::floor) * 4.0;
         let (mut out_sin, mut out_cos) = (Self::default(), Self::default());

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::inertia::SectionMass;
 use super::section_shape::SectionShape;
-use super::strain::{STRAIN_VARIABLES, SectionStiffness, at};
+use super::strain::{STRAIN_VARIABLES, SectionStiffness, Turn, at};
 
 /// Whether tension turns the built-in twist straight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -147,7 +147,7 @@ impl ModerateBlade {
         let theta = pitch_rad + self.properties.twist_rad(station);
         let [v_x, w_x, v_xx, w_xx, phi, phi_x] = shape.strain();
         let strain: [f64; STRAIN_VARIABLES] = [0.0, v_x, w_x, v_xx, w_xx, phi, phi_x];
-        let force = stiffness.elastic_force(theta, &strain, tension);
+        let force = stiffness.elastic_force(Turn::of(theta, &strain), &strain, tension);
         [at::W_XX, at::V_XX, at::PHI_X].map(|k| force[k])
     }
 

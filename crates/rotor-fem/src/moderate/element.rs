@@ -3,6 +3,7 @@
 use super::Scalar;
 use super::inertia::{SectionState, Spin};
 use super::points::{ElementPoints, MOTION, Point, STRAIN, SectionMatrix, add_at};
+use super::strain::Turn;
 use crate::beam::element::ElementMatrix;
 use crate::beam::shape::ELEMENT_DOF;
 
@@ -42,7 +43,7 @@ fn section_state<T: Scalar>(
     };
     SectionState {
         station: point.station,
-        pitch: [angle + point.twist_rad, rate, acceleration],
+        pitch: [angle + point.twist_rad, rate, acceleration].map(T::from_real),
         value: variables(&motion.value),
         rate: variables(&motion.rate),
         acceleration: variables(&motion.acceleration),
@@ -60,14 +61,14 @@ pub(crate) fn energies<T: Scalar>(
         let dx = T::from_real(point.dx);
         let state = section_state(point, imposed, motion);
         let s = point.strain(&motion.value);
-        let theta = imposed.pitch[0] + point.twist_rad;
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
         kinetic += dx * point.mass.energy(&imposed.spin, &state);
-        strain += dx * point.stiffness.bending_energy(theta, &s);
+        strain += dx * point.stiffness.bending_energy(turn, &s);
     }
     for point in &points.stretch {
         let s = point.strain(&motion.value);
-        let theta = imposed.pitch[0] + point.twist_rad;
-        strain += T::from_real(point.dx) * point.stiffness.stretch_energy(theta, &s);
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
+        strain += T::from_real(point.dx) * point.stiffness.stretch_energy(turn, &s);
     }
     [kinetic, strain]
 }
@@ -81,15 +82,14 @@ pub(crate) fn elastic_force<T: Scalar>(
     let mut out = [T::zero(); ELEMENT_DOF];
     for point in &points.whole {
         let s = point.strain(dof);
-        let theta = imposed.pitch[0] + point.twist_rad;
-        point.add_force(&mut out, &STRAIN, &point.stiffness.bending_force(theta, &s));
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
+        point.add_force(&mut out, &STRAIN, &point.stiffness.bending_force(turn, &s));
     }
     for point in &points.stretch {
         let s = point.strain(dof);
-        let theta = imposed.pitch[0] + point.twist_rad;
-        let tension =
-            point.stiffness.stretch(theta, &s).value * T::from_real(point.stiffness.axial);
-        point.add_force(&mut out, &STRAIN, &point.stiffness.tension_force(theta, &s, tension));
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
+        let tension = point.stiffness.stretch(turn, &s).value * T::from_real(point.stiffness.axial);
+        point.add_force(&mut out, &STRAIN, &point.stiffness.tension_force(turn, &s, tension));
     }
     out
 }
@@ -138,13 +138,13 @@ pub(crate) fn tangent(
         mass: ElementMatrix::zeros(),
     };
     for point in &points.whole {
-        let theta = imposed.pitch[0] + point.twist_rad;
         let s = point.strain(&motion.value);
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
         let inertia = point.mass.tangent(&imposed.spin, &section_state(point, imposed, motion));
-        point.add_force(&mut out.force, &STRAIN, &point.stiffness.bending_force(theta, &s));
+        point.add_force(&mut out.force, &STRAIN, &point.stiffness.bending_force(turn, &s));
         point.add_force(&mut out.force, &MOTION, &inertia.force);
         let mut section = SectionMatrix::zeros();
-        add_at(&mut section, &STRAIN, &point.stiffness.bending_stiffness(theta, &s));
+        add_at(&mut section, &STRAIN, &point.stiffness.bending_stiffness(turn, &s));
         add_at(&mut section, &MOTION, &inertia.stiffness);
         point.add_matrix(&mut out.stiffness, &section);
         for (matrix, part) in [(&mut out.damping, &inertia.damping), (&mut out.mass, &inertia.mass)]
@@ -155,13 +155,13 @@ pub(crate) fn tangent(
         }
     }
     for point in &points.stretch {
-        let theta = imposed.pitch[0] + point.twist_rad;
         let s = point.strain(&motion.value);
-        let tension = point.stiffness.axial * point.stiffness.stretch(theta, &s).value;
-        let pull = point.stiffness.tension_force(theta, &s, tension);
+        let turn = Turn::of(imposed.pitch[0] + point.twist_rad, &s);
+        let tension = point.stiffness.axial * point.stiffness.stretch(turn, &s).value;
+        let pull = point.stiffness.tension_force(turn, &s, tension);
         point.add_force(&mut out.force, &STRAIN, &pull);
         let mut section = SectionMatrix::zeros();
-        add_at(&mut section, &STRAIN, &point.stiffness.stretch_stiffness(theta, &s));
+        add_at(&mut section, &STRAIN, &point.stiffness.stretch_stiffness(turn, &s));
         point.add_matrix(&mut out.stiffness, &section);
     }
     out

@@ -1,9 +1,12 @@
 //! Kinetic energy of a section of the moderately deflected blade in the rotating frame: momentum,
 //! inertial force and its derivatives.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use nalgebra::SMatrix;
 
 use super::Scalar;
+use super::strain::Turn;
 
 /// Number of motion variables: `u v w v_x w_x phi`.
 pub(crate) const MOTION_VARIABLES: usize = 6;
@@ -48,14 +51,16 @@ pub(crate) struct Spin {
 }
 
 impl Spin {
+    #[inline(always)]
     pub(crate) fn new(speed: f64, precone_rad: f64) -> Self {
         let (sin, cos) = precone_rad.sin_cos();
         Self { along: speed * sin, across: speed * cos }
     }
 
     /// `omega x r`.
+    #[inline(always)]
     fn turn<T: Scalar>(&self, r: &Vector<T>) -> Vector<T> {
-        let [a, c] = [self.along, self.across].map(T::from_real);
+        let (a, c) = (T::from_real(self.along), T::from_real(self.across));
         [-(c * r[1]), c * r[0] - a * r[2], a * r[1]]
     }
 }
@@ -69,16 +74,19 @@ struct Moving<T> {
 }
 
 impl<T: Scalar> Moving<T> {
+    #[inline(always)]
     fn fixed(value: Vector<T>) -> Self {
         Self { value, rate: [T::zero(); 3], acceleration: [T::zero(); 3] }
     }
 
+    #[inline(always)]
     fn along_x(value: T, rate: T, acceleration: T) -> Self {
         let x = |component| [component, T::zero(), T::zero()];
         Self { value: x(value), rate: x(rate), acceleration: x(acceleration) }
     }
 
     /// Without its component along the blade.
+    #[inline(always)]
     fn flat(&self) -> Self {
         let across = |v: &Vector<T>| [T::zero(), v[1], v[2]];
         Self {
@@ -88,6 +96,7 @@ impl<T: Scalar> Moving<T> {
         }
     }
 
+    #[inline(always)]
     fn negative(&self) -> Self {
         let minus = |v: &Vector<T>| v.map(|c| -c);
         Self {
@@ -103,15 +112,22 @@ impl<T: Scalar> Moving<T> {
     }
 
     /// Acceleration over ground at constant rotation, `r'' + 2 omega x r' + omega x (omega x r)`.
+    #[inline(always)]
     fn absolute(&self, spin: &Spin) -> Vector<T> {
-        let two = self.rate.map(|c| c + c);
+        let [x, y, z] = self.rate;
         let centrifugal = spin.turn(&spin.turn(&self.value));
-        add(&self.acceleration, &add(&spin.turn(&two), &centrifugal))
+        add(&self.acceleration, &add(&spin.turn(&[x + x, y + y, z + z]), &centrifugal))
     }
 }
 
+#[inline(always)]
 fn add<T: Scalar>(a: &Vector<T>, b: &Vector<T>) -> Vector<T> {
-    std::array::from_fn(|i| a[i] + b[i])
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+#[inline(always)]
+fn dot<T: Scalar>(a: &Vector<T>, b: &Vector<T>) -> T {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 /// A field over the section that is linear in its coordinates: on the axis, per chordwise coordinate
@@ -125,10 +141,12 @@ struct Field<V> {
 }
 
 impl<T: Scalar> Field<Moving<T>> {
+    #[inline(always)]
     fn new(axis: Moving<T>, eta: Moving<T>, zeta: Moving<T>) -> Self {
         Self { axis, eta, flat_eta: eta.flat(), flat_zeta: zeta.flat() }
     }
 
+    #[inline(always)]
     fn map(&self, f: impl Fn(&Moving<T>) -> Vector<T>) -> Field<Vector<T>> {
         Field {
             axis: f(&self.axis),
@@ -138,6 +156,7 @@ impl<T: Scalar> Field<Moving<T>> {
         }
     }
 
+    #[inline(always)]
     fn values(&self) -> Field<Vector<T>> {
         self.map(|moving| moving.value)
     }
@@ -149,7 +168,7 @@ pub(crate) struct SectionState<T> {
     /// Station r/R.
     pub(crate) station: f64,
     /// Pitch plus built-in twist and the rates of pitch, rad.
-    pub(crate) pitch: [f64; 3],
+    pub(crate) pitch: [T; 3],
     /// `u v w v_x w_x phi`.
     pub(crate) value: [T; MOTION_VARIABLES],
     /// Their rates.
@@ -158,7 +177,7 @@ pub(crate) struct SectionState<T> {
     pub(crate) acceleration: [T; MOTION_VARIABLES],
 }
 
-/// The position of every point of the section and its derivatives in the motion variables.
+/// The position of every point of the section.
 ///
 /// ```text
 /// r = (x + u, v, w) + eta d(th1) + zeta d(th1 + pi/2)
@@ -166,17 +185,43 @@ pub(crate) struct SectionState<T> {
 /// ```
 #[derive(Debug, Clone, Copy)]
 struct Geometry<T> {
-    /// sin and cos of `th1`.
-    angle: [T; 2],
+    /// Cosine and sine of `th1` with two rates.
+    unit: [[T; 2]; 3],
     position: Field<Moving<T>>,
-    jacobian: [Field<Moving<T>>; MOTION_VARIABLES],
+    /// `d(th1 + pi/2)`, its component along the blade with it.
+    zeta: Moving<T>,
+}
+
+/// A quarter turn takes `(cos, sin)` to `(-sin, cos)`.
+#[inline(always)]
+fn quarter<T: Scalar>(unit: &[[T; 2]; 3]) -> [[T; 2]; 3] {
+    let [[c, s], [c1, s1], [c2, s2]] = *unit;
+    [[-s, c], [-s1, c1], [-s2, c2]]
+}
+
+/// `d` with two rates, of a direction and the slopes of a section.
+#[inline(always)]
+fn across<T: Scalar>([e, e1, e2]: &[[T; 2]; 3], s: &SectionState<T>) -> Moving<T> {
+    let [n, n1, n2] = [
+        [s.value[at::V_X], s.value[at::W_X]],
+        [s.rate[at::V_X], s.rate[at::W_X]],
+        [s.acceleration[at::V_X], s.acceleration[at::W_X]],
+    ];
+    let along = |p: &[T; 2], q: &[T; 2]| p[0] * q[0] + p[1] * q[1];
+    let mixed = along(&n1, e1);
+    Moving {
+        value: [-along(&n, e), e[0], e[1]],
+        rate: [-along(&n1, e) - along(&n, e1), e1[0], e1[1]],
+        acceleration: [-along(&n2, e) - mixed - mixed - along(&n, e2), e2[0], e2[1]],
+    }
 }
 
 impl<T: Scalar> Geometry<T> {
+    #[inline(always)]
     fn new(s: &SectionState<T>) -> Self {
-        let (zero, one) = (T::zero(), T::one());
-        let [a, b, c] = s.pitch.map(T::from_real);
-        let (sin, cos) = (s.value[at::PHI] + a).sin_cos();
+        let zero = T::zero();
+        let [a, b, c] = s.pitch;
+        let Turn { sin, cos } = Turn::new(a, s.value[at::PHI]);
         let (t1, t2) = (s.rate[at::PHI] + b, s.acceleration[at::PHI] + c);
         let axis = |part: &[T; MOTION_VARIABLES], x: T| [part[0] + x, part[1], part[2]];
         let axis = Moving {
@@ -184,53 +229,39 @@ impl<T: Scalar> Geometry<T> {
             rate: axis(&s.rate, zero),
             acceleration: axis(&s.acceleration, zero),
         };
-        // cosine and sine with their rates; a quarter turn takes (cos, sin) to (-sin, cos)
         let square = t1 * t1;
         let unit = [
             [cos, sin],
             [-(sin * t1), cos * t1],
             [-(cos * square) - sin * t2, cos * t2 - sin * square],
         ];
-        let direction = |turn: fn(&[T; 2]) -> [T; 2]| {
-            let [e, e1, e2] = unit.each_ref().map(turn);
-            let slopes = |part: &[T; MOTION_VARIABLES]| [part[at::V_X], part[at::W_X]];
-            let [n, n1, n2] = [slopes(&s.value), slopes(&s.rate), slopes(&s.acceleration)];
-            let dot = |p: &[T; 2], q: &[T; 2]| p[0] * q[0] + p[1] * q[1];
-            let mixed = dot(&n1, &e1);
-            let moving = Moving {
-                value: [-dot(&n, &e), e[0], e[1]],
-                rate: [-dot(&n1, &e) - dot(&n, &e1), e1[0], e1[1]],
-                acceleration: [-dot(&n2, &e) - mixed - mixed - dot(&n, &e2), e2[0], e2[1]],
-            };
-            let slope = |k: usize| Moving::along_x(-e[k], -e1[k], -e2[k]);
-            (moving, slope(0), slope(1))
-        };
-        let (d, d_v, d_w) = direction(|e| *e);
-        let (q, q_v, q_w) = direction(|e| [-e[1], e[0]]);
+        let zeta = across(&quarter(&unit), s);
+        Self { unit, position: Field::new(axis, across(&unit, s), zeta), zeta }
+    }
+
+    /// Derivatives of the position in the motion variables.
+    fn jacobian(&self) -> [Field<Moving<T>>; MOTION_VARIABLES] {
+        let (zero, one) = (T::zero(), T::one());
         let still = Moving::fixed([zero; 3]);
         let shift = |k: usize| {
             let unit = std::array::from_fn(|i| if i == k { one } else { zero });
             Field::new(Moving::fixed(unit), still, still)
         };
-        Self {
-            angle: [sin, cos],
-            position: Field::new(axis, d, q),
-            jacobian: [
-                shift(0),
-                shift(1),
-                shift(2),
-                Field::new(still, d_v, q_v),
-                Field::new(still, d_w, q_w),
-                Field::new(still, q, d.negative()),
-            ],
-        }
+        let turned = quarter(&self.unit);
+        let slope = |k: usize| {
+            let along = |[e, e1, e2]: &[[T; 2]; 3]| Moving::along_x(-e[k], -e1[k], -e2[k]);
+            Field::new(still, along(&self.unit), along(&turned))
+        };
+        let Field { eta, .. } = self.position;
+        let zeta = self.zeta;
+        [shift(0), shift(1), shift(2), slope(0), slope(1), Field::new(still, zeta, eta.negative())]
     }
 }
 
 impl SectionMass {
     /// Integral over the section of the product of two fields, per length.
+    #[inline(always)]
     fn product<T: Scalar>(&self, f: &Field<Vector<T>>, g: &Field<Vector<T>>) -> T {
-        let dot = |a: &Vector<T>, b: &Vector<T>| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
         let of = |moment: f64, value: T| value * T::from_real(moment);
         of(self.mass, dot(&f.axis, &g.axis))
             + of(self.first, dot(&f.axis, &g.eta) + dot(&f.eta, &g.axis))
@@ -259,7 +290,7 @@ impl SectionMass {
         let geometry = Geometry::new(s);
         let velocity = geometry.position.map(|r| r.velocity(spin));
         let pair = |f: Field<Vector<T>>| self.product(&f, &velocity);
-        let jacobian = &geometry.jacobian;
+        let jacobian = geometry.jacobian();
         [
             std::array::from_fn(|k| pair(jacobian[k].values())),
             std::array::from_fn(|k| pair(jacobian[k].map(|r| r.velocity(spin)))),
@@ -268,14 +299,31 @@ impl SectionMass {
 
     /// Inertial force per length on the motion variables: what has to be added to the elastic force for
     /// a sum of zero, the acceleration over ground times mass.
+    #[inline(always)]
     pub(crate) fn force<T: Scalar>(
         &self,
         spin: &Spin,
         s: &SectionState<T>,
     ) -> [T; MOTION_VARIABLES] {
-        let geometry = Geometry::new(s);
-        let acceleration = geometry.position.map(|r| r.absolute(spin));
-        std::array::from_fn(|k| self.product(&geometry.jacobian[k].values(), &acceleration))
+        let Geometry { unit: [[cos, sin], ..], position, zeta } = Geometry::new(s);
+        let of = |moment: f64, value: T| value * T::from_real(moment);
+        let [axis, eta] = [position.axis.absolute(spin), position.eta.absolute(spin)];
+        let chord = position.flat_eta.absolute(spin);
+        let thickness = position.flat_zeta.absolute(spin);
+        let along = of(self.first, axis[0]) + of(self.centre, eta[0]);
+        let [_, q_y, q_z] = zeta.value;
+        let turning = of(self.first, dot(&zeta.value, &axis))
+            + of(self.centre, dot(&zeta.value, &eta))
+            + of(self.flat_chord, q_y * chord[1] + q_z * chord[2])
+            - of(self.flat_thickness, cos * thickness[1] + sin * thickness[2]);
+        [
+            of(self.mass, axis[0]) + of(self.first, eta[0]),
+            of(self.mass, axis[1]) + of(self.first, eta[1]),
+            of(self.mass, axis[2]) + of(self.first, eta[2]),
+            -(cos * along),
+            -(sin * along),
+            turning,
+        ]
     }
 
     /// Mass times acceleration per length as force and moment about the rotor centre, in the axes of
@@ -308,9 +356,10 @@ impl SectionMass {
     pub(crate) fn tangent(&self, spin: &Spin, s: &SectionState<f64>) -> InertialTangent {
         let g = Geometry::new(s);
         let acceleration = g.position.map(|r| r.absolute(spin));
-        let row = g.jacobian.each_ref().map(Field::values);
-        let twice = g.jacobian.each_ref().map(|j| j.map(|r| r.velocity(spin).map(|c| 2.0 * c)));
-        let absolute = g.jacobian.each_ref().map(|j| j.map(|r| r.absolute(spin)));
+        let jacobian = g.jacobian();
+        let row = jacobian.each_ref().map(Field::values);
+        let twice = jacobian.each_ref().map(|j| j.map(|r| r.velocity(spin).map(|c| 2.0 * c)));
+        let absolute = jacobian.each_ref().map(|j| j.map(|r| r.absolute(spin)));
         let table = |columns: &[Field<Vector<f64>>; MOTION_VARIABLES]| {
             MotionMatrix::from_fn(|k, l| self.product(&row[k], &columns[l]))
         };
@@ -331,7 +380,7 @@ impl SectionMass {
         g: &Geometry<f64>,
         acceleration: &Field<Vector<f64>>,
     ) {
-        let [sin, cos] = g.angle;
+        let [cos, sin] = g.unit[0];
         let fixed = |v: Vector<f64>| Moving::fixed(v);
         let pair = |eta: Vector<f64>, zeta: Vector<f64>| {
             let curving = Field::new(fixed([0.0; 3]), fixed(eta), fixed(zeta)).values();
@@ -389,7 +438,7 @@ mod tests {
     fn complex(s: &SectionState<f64>) -> SectionState<Complex<f64>> {
         SectionState {
             station: s.station,
-            pitch: s.pitch,
+            pitch: s.pitch.map(Complex::from),
             value: s.value.map(Complex::from),
             rate: s.rate.map(Complex::from),
             acceleration: s.acceleration.map(Complex::from),
@@ -447,7 +496,7 @@ mod tests {
         }
         ahead.value[at::PHI].im += STEP * s.pitch[1];
         ahead.rate[at::PHI] += Complex::new(s.pitch[1], STEP * s.pitch[2]);
-        ahead.pitch = [s.pitch[0], 0.0, 0.0];
+        ahead.pitch = [s.pitch[0], 0.0, 0.0].map(Complex::from);
         let gained = m.energy(&spin, &ahead).im / STEP;
         let moving: f64 = force.iter().zip(s.rate).map(|(f, v)| f * v).sum();
         let turning = spin.along * wrench[3] + spin.across * wrench[5];

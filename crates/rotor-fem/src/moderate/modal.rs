@@ -10,12 +10,16 @@
 //!
 //! Left out: the stretch by the changing part of the tension, of the order of its ratio to EA.
 
-use super::inertia::{MOTION_VARIABLES, SectionMass, SectionState, Spin};
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
+use super::inertia::{MOTION_VARIABLES, SectionMass, SectionState, Spin, at as motion_at};
 use super::section_shape::SectionShape;
 use super::span::Span;
-use super::strain::{Curvatures, STRAIN_VARIABLES, SectionStiffness, at};
+use super::strain::{Curvatures, STRAIN_VARIABLES, SectionStiffness, Turn, at};
 use super::{ModerateBlade, PitchMotion, Scalar};
 use crate::FemError;
+use pulp::{Arch, Simd, WithSimd};
+use rotor_base::Lanes;
 
 /// A displacement field of the blade at its root and at all stations.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,6 +85,7 @@ struct Section {
 #[derive(Debug, Clone, Copy)]
 struct Station<T> {
     state: SectionState<T>,
+    turn: Turn<T>,
     strain: [[T; STRAIN_VARIABLES]; 3],
 }
 
@@ -226,34 +231,65 @@ impl ModalBlade {
         stations.iter().zip(&self.sections).zip(tension).map(of).collect()
     }
 
-    /// Modal force of applied loads per length `[f_x, f_y, f_z, nose-up moment]` at the stations, the
-    /// virtual work of the axial force on the foreshortening included.
+    /// What is not in balance on each mode under applied loads per length `[f_x, f_y, f_z, nose-up moment]` at the stations:
+    /// elastic plus inertial force less the virtual work of the loads, that of the axial force on the foreshortening included. A
+    /// pure function of its arguments.
     ///
     /// # Panics
     /// If the numbers of coordinates or loads do not fit.
-    pub fn applied(&self, value: &[f64], pitch: PitchMotion, loads: &[[f64; 4]]) -> Vec<f64> {
-        let stations = self.standing(value, &pitch);
-        let axial: Vec<f64> = loads.iter().map(|load| load[0]).collect();
+    pub fn unbalanced(
+        &self,
+        motion: ModalMotion<'_>,
+        pitch: PitchMotion,
+        loads: &[[f64; 4]],
+    ) -> Vec<f64> {
+        self.left_by(&motion, &pitch, loads)
+    }
+
+    /// The same at azimuths side by side: in every lane what it is there, but for the rounding of sine and cosine.
+    ///
+    /// # Panics
+    /// As [`unbalanced`](Self::unbalanced).
+    pub fn unbalanced_side_by_side(
+        &self,
+        motion: ModalMotion<'_, Lanes>,
+        pitch: PitchMotion<Lanes>,
+        loads: &[[Lanes; 4]],
+    ) -> Vec<Lanes> {
+        Arch::new().dispatch(Unbalanced { blade: self, motion, pitch, loads })
+    }
+
+    #[inline(always)]
+    fn left_by<T: Scalar>(
+        &self,
+        motion: &ModalMotion<'_, T>,
+        pitch: &PitchMotion<T>,
+        loads: &[[T; 4]],
+    ) -> Vec<T> {
+        let Loaded { stations, mut generalised, .. } = self.loaded(motion, pitch);
+        let mut axial = Vec::with_capacity(loads.len());
+        for load in loads {
+            axial.push(load[0]);
+        }
         let pull = self.span.to_tip(&axial);
-        self.modes
-            .iter()
-            .map(|mode| {
-                let mut sum = 0.0;
-                for (i, shape) in mode.sections.iter().enumerate() {
-                    let [_, fy, fz, moment] = loads[i];
-                    let section = &self.sections[i];
-                    let theta = pitch.angle_rad + section.twist_rad;
-                    let strain = &stations[i].strain[0];
-                    let gradient = section.stiffness.stretch(theta, strain).gradient;
-                    let shortening: f64 =
-                        gradient[1..].iter().zip(shape.strain()).map(|(g, s)| g * s).sum();
-                    let transverse = fy * shape.lag[0] + fz * shape.flap[0];
-                    sum += self.span.weights[i]
-                        * (transverse + moment * shape.twist[0] - pull[i] * shortening);
+        let of = |value: T, shape: f64| value * T::from_real(shape);
+        let sections = self.sections.iter().zip(&stations);
+        for (i, (section, station)) in sections.enumerate() {
+            let [_, fy, fz, moment] = loads[i];
+            let gradient = section.stiffness.stretch(station.turn, &station.strain[0]).gradient;
+            let weight = self.span.weights[i];
+            for (mode, left) in self.modes.iter().zip(&mut generalised) {
+                let shape = &mode.sections[i];
+                let mut shortening = T::zero();
+                for (g, s) in gradient[1..].iter().zip(shape.strain()) {
+                    shortening += of(*g, s);
                 }
-                sum
-            })
-            .collect()
+                let work =
+                    of(fy, shape.lag[0]) + of(fz, shape.flap[0]) + of(moment, shape.twist[0]);
+                *left -= of(work - pull[i] * shortening, weight);
+            }
+        }
+        generalised
     }
 
     /// Motion of every station at rest in the rotating frame.
@@ -263,49 +299,36 @@ impl ModalBlade {
     }
 
     /// Motion of every station from the modal coordinates.
+    #[inline(always)]
     fn kinematics<T: Scalar>(
         &self,
         motion: &ModalMotion<'_, T>,
-        pitch: &PitchMotion,
+        pitch: &PitchMotion<T>,
     ) -> Vec<Station<T>> {
         let count = self.sections.len();
         let mut stations = Vec::with_capacity(count);
-        let mut slopes = [(); 3].map(|()| Vec::with_capacity(count));
+        let [mut u, mut u1, mut u2] = [(); 3].map(|()| Vec::with_capacity(count));
         for (i, section) in self.sections.iter().enumerate() {
-            let sum = |coordinates: &[T]| {
-                let mut moving = [T::zero(); MOTION_VARIABLES - 1];
-                let mut strain = [T::zero(); STRAIN_VARIABLES - 1];
-                for (mode, q) in self.modes.iter().zip(coordinates) {
-                    let shape = &mode.sections[i];
-                    for (out, s) in moving.iter_mut().zip(shape.motion()) {
-                        *out += *q * T::from_real(s);
-                    }
-                    for (out, s) in strain.iter_mut().zip(shape.strain()) {
-                        *out += *q * T::from_real(s);
-                    }
-                }
-                let [v, w, v_x, w_x, phi] = moving;
-                let [a, b, c, d, e, f] = strain;
-                ([T::zero(), v, w, v_x, w_x, phi], [T::zero(), a, b, c, d, e, f])
-            };
-            let (value, s0) = sum(motion.value);
-            let (rate, s1) = sum(motion.rate);
-            let (acceleration, s2) = sum(motion.acceleration);
+            let (value, s0) = self.at_station(i, motion.value);
+            let (rate, s1) = self.at_station(i, motion.rate);
+            let (acceleration, s2) = self.at_station(i, motion.acceleration);
             let [angle, pitch_rate, pitch_acceleration] = pitch.rates();
             let state = SectionState {
                 station: self.span.stations[i],
-                pitch: [angle + section.twist_rad, pitch_rate, pitch_acceleration],
+                pitch: [angle + T::from_real(section.twist_rad), pitch_rate, pitch_acceleration],
                 value,
                 rate,
                 acceleration,
             };
-            let station = Station { state, strain: [s0, s1, s2] };
-            for (slope, part) in slopes.iter_mut().zip(section.axial_slope(&station)) {
-                slope.push(part);
-            }
+            let turn = Turn::new(state.pitch[0], state.value[motion_at::PHI]);
+            let station = Station { state, turn, strain: [s0, s1, s2] };
+            let [slope, slope_rate, slope_acceleration] = section.axial_slope(&station);
+            u.push(slope);
+            u1.push(slope_rate);
+            u2.push(slope_acceleration);
             stations.push(station);
         }
-        let [u, u1, u2] = slopes.each_ref().map(|slope| self.span.running(slope));
+        let [u, u1, u2] = [self.span.running(&u), self.span.running(&u1), self.span.running(&u2)];
         for (i, station) in stations.iter_mut().enumerate() {
             station.state.value[0] = u[i];
             station.state.rate[0] = u1[i];
@@ -314,86 +337,132 @@ impl ModalBlade {
         stations
     }
 
+    /// Motion and strain variables of a station, the axial ones left 0, of modal coordinates or their rates.
+    #[inline(always)]
+    fn at_station<T: Scalar>(
+        &self,
+        i: usize,
+        coordinates: &[T],
+    ) -> ([T; MOTION_VARIABLES], [T; STRAIN_VARIABLES]) {
+        let mut moving = [T::zero(); MOTION_VARIABLES];
+        let mut strain = [T::zero(); STRAIN_VARIABLES];
+        for (mode, q) in self.modes.iter().zip(coordinates) {
+            let shape = &mode.sections[i];
+            for (out, s) in moving[1..].iter_mut().zip(shape.motion()) {
+                *out += *q * T::from_real(s);
+            }
+            for (out, s) in strain[1..].iter_mut().zip(shape.strain()) {
+                *out += *q * T::from_real(s);
+            }
+        }
+        (moving, strain)
+    }
+
     /// Motion, inertial loads, tension and modal force.
-    fn loaded<T: Scalar>(&self, motion: &ModalMotion<'_, T>, pitch: &PitchMotion) -> Loaded<T> {
+    #[inline(always)]
+    fn loaded<T: Scalar>(&self, motion: &ModalMotion<'_, T>, pitch: &PitchMotion<T>) -> Loaded<T> {
         let stations = self.kinematics(motion, pitch);
-        let inertial: Vec<[T; MOTION_VARIABLES]> = stations
-            .iter()
-            .zip(&self.sections)
-            .map(|(station, section)| section.mass.force(&self.spin, &station.state))
-            .collect();
-        let axial: Vec<T> = inertial.iter().map(|f| -f[0]).collect();
+        let count = stations.len();
+        let mut inertial = Vec::with_capacity(count);
+        let mut axial = Vec::with_capacity(count);
+        for (station, section) in stations.iter().zip(&self.sections) {
+            let force = section.mass.force(&self.spin, &station.state);
+            axial.push(-force[0]);
+            inertial.push(force);
+        }
         let tension = self.span.to_tip(&axial);
-        let elastic: Vec<[T; STRAIN_VARIABLES]> = stations
-            .iter()
-            .zip(&self.sections)
-            .zip(&tension)
-            .map(|((station, section), n)| section.elastic_force(station, *n))
-            .collect();
-        let generalised = self.modes.iter().map(|mode| {
-            let mut sum = self.spring_force(mode, motion.value);
-            for (i, shape) in mode.sections.iter().enumerate() {
-                let weight = self.span.weights[i];
+        let mut generalised = Vec::with_capacity(self.modes.len());
+        for mode in &self.modes {
+            generalised.push(self.spring_force(mode, motion.value));
+        }
+        let mut pitch_moment = T::zero();
+        for (i, (station, section)) in stations.iter().zip(&self.sections).enumerate() {
+            let elastic = section.elastic_force(station, tension[i]);
+            let weight = self.span.weights[i];
+            for (mode, sum) in self.modes.iter().zip(&mut generalised) {
+                let shape = &mode.sections[i];
                 for (s, f) in shape.motion().iter().zip(&inertial[i][1..]) {
-                    sum += *f * T::from_real(weight * s);
+                    *sum += *f * T::from_real(weight * s);
                 }
-                for (s, f) in shape.strain().iter().zip(&elastic[i][1..]) {
-                    sum += *f * T::from_real(weight * s);
+                for (s, f) in shape.strain().iter().zip(&elastic[1..]) {
+                    *sum += *f * T::from_real(weight * s);
                 }
             }
-            sum
-        });
-        let generalised = generalised.collect();
-        let mut pitch_moment = T::zero();
-        for (weight, (f, e)) in self.span.weights.iter().zip(inertial.iter().zip(&elastic)) {
-            pitch_moment += (f[super::inertia::at::PHI] + e[at::PHI]) * T::from_real(*weight);
+            let moment = inertial[i][motion_at::PHI] + elastic[at::PHI];
+            pitch_moment += moment * T::from_real(weight);
         }
         Loaded { stations, inertial, generalised, pitch_moment }
     }
 
     /// Derivative of the springs' force in the coordinates, for two modes.
+    #[inline(always)]
     fn spring_stiffness(&self, a: &ModalShape, b: &ModalShape) -> f64 {
         let (a, b) = (root_rotations(a), root_rotations(b));
         self.springs.iter().zip(a).zip(b).map(|((k, a), b)| k * a * b).sum()
     }
 
+    #[inline(always)]
     fn spring_force<T: Scalar>(&self, mode: &ModalShape, value: &[T]) -> T {
-        self.modes.iter().zip(value).fold(T::zero(), |sum, (other, q)| {
-            sum + *q * T::from_real(self.spring_stiffness(mode, other))
-        })
+        let mut sum = T::zero();
+        for (other, q) in self.modes.iter().zip(value) {
+            sum += *q * T::from_real(self.spring_stiffness(mode, other));
+        }
+        sum
     }
 }
 
 /// Rotations of the root that the springs see.
+#[inline(always)]
 fn root_rotations(shape: &ModalShape) -> [f64; 3] {
     [shape.root.lag[1], shape.root.flap[1], shape.root.twist[0]]
 }
 
+/// [`ModalBlade::unbalanced_side_by_side`], compiled for the vector unit.
+struct Unbalanced<'a> {
+    blade: &'a ModalBlade,
+    motion: ModalMotion<'a, Lanes>,
+    pitch: PitchMotion<Lanes>,
+    loads: &'a [[Lanes; 4]],
+}
+
+impl WithSimd for Unbalanced<'_> {
+    type Output = Vec<Lanes>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<Lanes> {
+        self.blade.left_by(&self.motion, &self.pitch, self.loads)
+    }
+}
+
+/// A gradient along a rate of the strain variables, with another rate of the twist.
+#[inline(always)]
+fn along<T: Scalar>(gradient: &[T; STRAIN_VARIABLES], rate: &[T; STRAIN_VARIABLES], turn: T) -> T {
+    let mut sum = T::zero();
+    for (k, (g, p)) in gradient.iter().zip(rate).enumerate() {
+        sum += *g * if k == at::PHI { turn } else { *p };
+    }
+    sum
+}
+
 impl Section {
     /// Elastic force on the strain variables under a tension `n`.
+    #[inline(always)]
     fn elastic_force<T: Scalar>(&self, station: &Station<T>, n: T) -> [T; STRAIN_VARIABLES] {
-        self.stiffness.elastic_force(station.state.pitch[0], &station.strain[0], n)
+        self.stiffness.elastic_force(station.turn, &station.strain[0], n)
     }
 
     /// Slope of the axial displacement with two rates.
+    #[inline(always)]
     fn axial_slope<T: Scalar>(&self, station: &Station<T>) -> [T; 3] {
         let [s, s1, s2] = &station.strain;
         let state = &station.state;
-        let e = self.stiffness.stretch(state.pitch[0], s);
-        let [_, b, c] = state.pitch.map(T::from_real);
+        let e = self.stiffness.stretch(station.turn, s);
+        let [_, b, c] = state.pitch;
         let (t1, t2) = (s1[at::PHI] + b, s2[at::PHI] + c);
-        let turned = |part: &[T; STRAIN_VARIABLES], turn: T| {
-            let mut out = *part;
-            out[at::PHI] = turn;
-            out
-        };
-        let along = |part: &[T; STRAIN_VARIABLES]| {
-            e.gradient.iter().zip(part).fold(T::zero(), |sum, (g, p)| sum + *g * *p)
-        };
         let two = T::from_real(2.0);
-        let [ka_2, ea] =
-            [self.stiffness.area_radius_squared, self.stiffness.tension_centre].map(T::from_real);
-        let k = Curvatures::new(state.pitch[0], 0.0, s);
+        let ka_2 = T::from_real(self.stiffness.area_radius_squared);
+        let ea = T::from_real(self.stiffness.tension_centre);
+        let k = Curvatures::new(station.turn, 0.0, s);
         let [sin, cos] = [k.z.gradient[at::W_XX], k.z.gradient[at::V_XX]];
         let bending = two * t1 * (s1[at::W_XX] * cos - s1[at::V_XX] * sin) - t1 * t1 * k.z.value;
         let (v_x, w_x) = (s[at::V_X], s[at::W_X]);
@@ -404,8 +473,8 @@ impl Section {
             + ka_2 * s1[at::PHI_X] * s1[at::PHI_X];
         [
             T::from_real(self.stretch) - e.value,
-            -along(&turned(s1, t1)),
-            -(along(&turned(s2, t2)) + squares - ea * bending),
+            -along(&e.gradient, s1, t1),
+            -(along(&e.gradient, s2, t2) + squares - ea * bending),
         ]
     }
 }
@@ -469,6 +538,11 @@ mod tests {
         PitchMotion { angle_rad: 0.2, rate: -0.15, acceleration: 0.12 }
     }
 
+    fn complex(pitch: &PitchMotion) -> PitchMotion<Complex<f64>> {
+        let [angle_rad, rate, acceleration] = pitch.rates().map(Complex::from);
+        PitchMotion { angle_rad, rate, acceleration }
+    }
+
     fn state() -> [[f64; MODES]; 3] {
         [0.04, 0.2, 0.3].map(|a| std::array::from_fn(|k| a * (1.7 * k as f64 + 9.0 * a).sin()))
     }
@@ -494,11 +568,10 @@ mod tests {
             let none = [Complex::from(0.0); MODES];
             let coordinates = ModalMotion { value: q, rate: qd, acceleration: &none };
             let mut sum = Complex::from(0.0);
-            for (i, station) in blade.kinematics(&coordinates, pitch).iter().enumerate() {
+            for (i, station) in blade.kinematics(&coordinates, &complex(pitch)).iter().enumerate() {
                 let section = &blade.sections[i];
                 let kinetic = section.mass.energy(&blade.spin, &station.state);
-                let theta = station.state.pitch[0];
-                let strain = section.stiffness.bending_energy(theta, &station.strain[0]);
+                let strain = section.stiffness.bending_energy(station.turn, &station.strain[0]);
                 sum += (kinetic - strain) * Complex::from(blade.span.weights[i]);
             }
             for (a, qa) in q.iter().enumerate() {
@@ -529,6 +602,39 @@ mod tests {
             let expected = momentum_rate - slope(0.0, k, false);
             let gap = (got - expected).abs();
             assert!(gap < 1e-9 * (1.0 + expected.abs()), "{k}: {got} {expected}");
+        }
+    }
+
+    /// In every lane what is out of balance alone, loads and all.
+    #[test]
+    fn azimuths_side_by_side_are_those_one_by_one() {
+        let blade = blade();
+        let lane = |k: usize| 1.0 + 0.3 * (k as f64 + 0.5).sin();
+        let side_by_side =
+            |of: [f64; MODES]| of.map(|value| Lanes::from_fn(|k| lane(k) * value)).to_vec();
+        let [value, rate, acceleration] = state().map(side_by_side);
+        let pitches = pitch().rates().map(|own| Lanes::from_fn(|k| lane(k) * own));
+        let [angle_rad, pitch_rate, pitch_acceleration] = pitches;
+        let turning = PitchMotion { angle_rad, rate: pitch_rate, acceleration: pitch_acceleration };
+        let load = |x: f64| [0.3 * x, -0.2, 0.5 * x * x, 0.04];
+        let along: Vec<[f64; 4]> = blade.stations().iter().map(|x| load(*x)).collect();
+        let loads: Vec<[Lanes; 4]> =
+            along.iter().map(|own| own.map(|f| Lanes::from_fn(|k| f * lane(k)))).collect();
+        let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
+        let found = blade.unbalanced_side_by_side(motion, turning, &loads);
+        for k in 0..rotor_base::LANES {
+            let [q, qd, qdd] = state().map(|of| of.map(|own| lane(k) * own));
+            let motion = ModalMotion { value: &q, rate: &qd, acceleration: &qdd };
+            let [angle_rad, rate, acceleration] = pitch().rates().map(|own| lane(k) * own);
+            let pitch = PitchMotion { angle_rad, rate, acceleration };
+            let own: Vec<[f64; 4]> = along.iter().map(|of| of.map(|f| f * lane(k))).collect();
+            let alone = blade.unbalanced(motion, pitch, &own);
+            let bare = blade.force(motion, pitch);
+            for (i, left) in alone.iter().enumerate() {
+                let gap = (found[i].0[k] - left).abs();
+                assert!(gap < 1e-14 * (1.0 + left.abs()), "{i} {k}: {gap:e}");
+                assert!((left - bare[i]).abs() > 1e-4);
+            }
         }
     }
 }

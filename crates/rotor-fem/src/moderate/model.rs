@@ -1,11 +1,14 @@
 //! The assembled nonlinear blade.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::ModerateBlade;
 use super::element::{self, ElementMotion, Imposed};
 use super::inertia::Spin;
 use super::points::ElementPoints;
+use super::strain::Turn;
 use crate::beam::assembly::{add_element, check_elements, section_motion};
 use crate::beam::shape::{ELEMENT_DOF, JOINT_DOF, STRIDE, place};
 use crate::{FemError, RootSupport, SectionMotion};
@@ -27,8 +30,12 @@ impl PitchMotion {
     pub fn steady(angle_rad: f64) -> Self {
         Self { angle_rad, ..Self::default() }
     }
+}
 
-    pub(crate) fn rates(&self) -> [f64; 3] {
+impl<T: Copy> PitchMotion<T> {
+    /// Angle, rate and acceleration.
+    #[inline(always)]
+    pub(crate) fn rates(&self) -> [T; 3] {
         [self.angle_rad, self.rate, self.acceleration]
     }
 }
@@ -291,8 +298,8 @@ impl ModerateModel {
             let local: [f64; ELEMENT_DOF] = std::array::from_fn(|i| dof[STRIDE * e + i]);
             for point in &points.stretch {
                 let s = point.strain(&local);
-                let theta = pitch.angle_rad + point.twist_rad;
-                let strain = point.stiffness.stretch(theta, &s).value;
+                let turn = Turn::of(pitch.angle_rad + point.twist_rad, &s);
+                let strain = point.stiffness.stretch(turn, &s).value;
                 out.push([point.station, point.stiffness.axial * strain]);
             }
         }

@@ -1,5 +1,7 @@
 //! Quadrature along the span of the modal blade, with running integrals.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use rotor_base::{LagrangeBasis, gauss_legendre};
 
 use super::Scalar;
@@ -35,29 +37,43 @@ impl Span {
     ///
     /// For Gauss points it is the adjoint of [`Self::to_tip`] to the last bit of the arithmetic: virtual
     /// work is done by the very forces that are summed.
+    #[inline(always)]
     pub(super) fn running<T: Scalar>(&self, f: &[T]) -> Vec<T> {
         let count = self.integration.len() - 1;
         let mut before = T::zero();
         let mut out = Vec::with_capacity(f.len());
         for (values, half) in f.chunks_exact(count).zip(&self.halves) {
-            let partial = |row: &[f64]| {
-                let sum = row.iter().zip(values);
-                sum.fold(T::zero(), |sum, (a, b)| sum + *b * T::from_real(a * half))
-            };
-            out.extend(self.integration[..count].iter().map(|row| before + partial(row)));
-            before += partial(&self.integration[count]);
+            for row in &self.integration[..count] {
+                out.push(before + partial(row, values, *half));
+            }
+            before += partial(&self.integration[count], values, *half);
         }
         out
     }
 
     /// Integral from every station to the tip.
+    #[inline(always)]
     pub(super) fn to_tip<T: Scalar>(&self, f: &[T]) -> Vec<T> {
-        let whole = f
-            .iter()
-            .zip(&self.weights)
-            .fold(T::zero(), |sum, (value, weight)| sum + *value * T::from_real(*weight));
-        self.running(f).into_iter().map(|part| whole - part).collect()
+        let mut whole = T::zero();
+        for (value, weight) in f.iter().zip(&self.weights) {
+            whole += *value * T::from_real(*weight);
+        }
+        let mut out = self.running(f);
+        for part in &mut out {
+            *part = whole - *part;
+        }
+        out
     }
+}
+
+/// A row of the integration of one piece, half its length long.
+#[inline(always)]
+fn partial<T: Scalar>(row: &[f64], values: &[T], half: f64) -> T {
+    let mut sum = T::zero();
+    for (a, b) in row.iter().zip(values) {
+        sum += *b * T::from_real(a * half);
+    }
+    sum
 }
 
 #[cfg(test)]

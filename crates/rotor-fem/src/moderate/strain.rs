@@ -1,5 +1,7 @@
 //! Strain energy of a section of the moderately deflected blade: measures, forces, stiffness.
 
+#![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+
 use nalgebra::SMatrix;
 
 use super::Scalar;
@@ -60,11 +62,33 @@ pub(crate) struct Curvatures<T> {
     pub(crate) x: Measure<T>,
 }
 
+/// Sine and cosine of the angle `th1` of a section.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Turn<T> {
+    pub(crate) sin: T,
+    pub(crate) cos: T,
+}
+
+impl<T: Scalar> Turn<T> {
+    /// At pitch plus built-in twist, rad, and an elastic twist.
+    #[inline(always)]
+    pub(crate) fn new(theta_rad: T, phi_rad: T) -> Self {
+        let (sin, cos) = (phi_rad + theta_rad).turned();
+        Self { sin, cos }
+    }
+
+    /// At pitch plus built-in twist, rad, and the strain variables.
+    pub(crate) fn of(theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> Self {
+        Self::new(T::from_real(theta_rad), s[at::PHI])
+    }
+}
+
 impl<T: Scalar> Curvatures<T> {
-    /// At the strain variables `s`, the pitch plus built-in twist `theta_rad` and the factor b.
-    pub(crate) fn new(theta_rad: f64, bending_twist: f64, s: &[T; STRAIN_VARIABLES]) -> Self {
+    /// At the strain variables `s`, the angle th1 and the factor b.
+    #[inline(always)]
+    pub(crate) fn new(turn: Turn<T>, bending_twist: f64, s: &[T; STRAIN_VARIABLES]) -> Self {
         let b = T::from_real(bending_twist);
-        let (sin, cos) = (s[at::PHI] + T::from_real(theta_rad)).sin_cos();
+        let Turn { sin, cos } = turn;
         let (zero, one) = (T::zero(), T::one());
         let z = s[at::V_XX] * cos + s[at::W_XX] * sin;
         let y = s[at::W_XX] * cos - s[at::V_XX] * sin;
@@ -88,16 +112,21 @@ impl SectionStiffness {
     /// with `q = v_x^2 + w_x^2`: the foreshortening of a blade that turns by a finite angle, `1 - sqrt(1 - q)`, to fourth order. The
     /// centrifugal stiffness of a hinge close to the shaft is the small difference `e` of two terms of the size of the
     /// radius, and `q^2` is not small beside it.
+    #[inline(always)]
     pub(crate) fn stretch<T: Scalar>(
         &self,
-        theta_rad: f64,
+        turn: Turn<T>,
         s: &[T; STRAIN_VARIABLES],
     ) -> Measure<T> {
         let (half, twist_rate) = (T::from_real(0.5), T::from_real(self.twist_rate));
-        let [ka_2, ea] = [self.area_radius_squared, self.tension_centre].map(T::from_real);
+        let ka_2 = T::from_real(self.area_radius_squared);
+        let ea = T::from_real(self.tension_centre);
         let [v_x, w_x, phi_x] = [s[at::V_X], s[at::W_X], s[at::PHI_X]];
-        let bending = Curvatures::new(theta_rad, self.bending_twist, s).z;
-        let mut gradient = bending.gradient.map(|g| -ea * g);
+        let bending = Curvatures::new(turn, self.bending_twist, s).z;
+        let mut gradient = bending.gradient;
+        for g in &mut gradient {
+            *g = -ea * *g;
+        }
         gradient[at::U_X] += T::one();
         let q = v_x * v_x + w_x * w_x;
         let growth = T::one() + half * q;
@@ -117,61 +146,73 @@ impl SectionStiffness {
     /// ```
     /// Source: D. H. Hodges, E. H. Dowell, NASA TN D-7818 (1974), moderate-deflection strain energy; the
     /// trigonometric functions are kept whole. Not modelled: warping, shear.
-    pub(crate) fn bending_energy<T: Scalar>(&self, theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> T {
-        let k = Curvatures::new(theta_rad, self.bending_twist, s);
+    pub(crate) fn bending_energy<T: Scalar>(&self, turn: Turn<T>, s: &[T; STRAIN_VARIABLES]) -> T {
+        let k = Curvatures::new(turn, self.bending_twist, s);
         let half = |stiffness: f64, value: T| value * value * T::from_real(0.5 * stiffness);
         half(self.lag, k.z.value) + half(self.flap, k.y.value) + half(self.torsion, k.x.value)
     }
 
     /// Energy per length of stretching, `EA e^2 / 2`.
-    pub(crate) fn stretch_energy<T: Scalar>(&self, theta_rad: f64, s: &[T; STRAIN_VARIABLES]) -> T {
-        let e = self.stretch(theta_rad, s).value;
+    pub(crate) fn stretch_energy<T: Scalar>(&self, turn: Turn<T>, s: &[T; STRAIN_VARIABLES]) -> T {
+        let e = self.stretch(turn, s).value;
         e * e * T::from_real(0.5 * self.axial)
     }
 
     /// Gradient of [`Self::bending_energy`].
+    #[inline(always)]
     pub(crate) fn bending_force<T: Scalar>(
         &self,
-        theta_rad: f64,
+        turn: Turn<T>,
         s: &[T; STRAIN_VARIABLES],
     ) -> [T; STRAIN_VARIABLES] {
-        let k = Curvatures::new(theta_rad, self.bending_twist, s);
-        let parts = [(self.lag, k.z), (self.flap, k.y), (self.torsion, k.x)];
-        let parts = parts.map(|(stiffness, m)| (m.value * T::from_real(stiffness), m.gradient));
-        std::array::from_fn(|i| {
-            parts.iter().fold(T::zero(), |sum, (moment, g)| sum + *moment * g[i])
-        })
+        let k = Curvatures::new(turn, self.bending_twist, s);
+        let mut out = [T::zero(); STRAIN_VARIABLES];
+        for (stiffness, m) in [(self.lag, k.z), (self.flap, k.y), (self.torsion, k.x)] {
+            let moment = m.value * T::from_real(stiffness);
+            for (sum, g) in out.iter_mut().zip(m.gradient) {
+                *sum += moment * g;
+            }
+        }
+        out
     }
 
     /// Force of a tension `n` on the strain variables, `n` times the gradient of the stretch.
+    #[inline(always)]
     pub(crate) fn tension_force<T: Scalar>(
         &self,
-        theta_rad: f64,
+        turn: Turn<T>,
         s: &[T; STRAIN_VARIABLES],
         n: T,
     ) -> [T; STRAIN_VARIABLES] {
-        self.stretch(theta_rad, s).gradient.map(|g| n * g)
+        let mut out = self.stretch(turn, s).gradient;
+        for force in &mut out {
+            *force = n * *force;
+        }
+        out
     }
 
     /// Force of bending, torsion and a tension `n` on the strain variables.
+    #[inline(always)]
     pub(crate) fn elastic_force<T: Scalar>(
         &self,
-        theta_rad: f64,
+        turn: Turn<T>,
         s: &[T; STRAIN_VARIABLES],
         n: T,
     ) -> [T; STRAIN_VARIABLES] {
-        let bending = self.bending_force(theta_rad, s);
-        let pull = self.tension_force(theta_rad, s, n);
-        std::array::from_fn(|k| bending[k] + pull[k])
+        let mut out = self.bending_force(turn, s);
+        for (sum, pull) in out.iter_mut().zip(self.tension_force(turn, s, n)) {
+            *sum += pull;
+        }
+        out
     }
 
     /// Second derivatives of [`Self::bending_energy`], symmetric.
     pub(crate) fn bending_stiffness(
         &self,
-        theta_rad: f64,
+        turn: Turn<f64>,
         s: &[f64; STRAIN_VARIABLES],
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
-        let k = Curvatures::new(theta_rad, self.bending_twist, s);
+        let k = Curvatures::new(turn, self.bending_twist, s);
         let mut out = SMatrix::zeros();
         add_square(&mut out, self.lag, &k.z.gradient);
         add_square(&mut out, self.flap, &k.y.gradient);
@@ -188,11 +229,11 @@ impl SectionStiffness {
     /// Second derivatives of the stretch, times a tension `n`, symmetric.
     pub(crate) fn tension_stiffness(
         &self,
-        theta_rad: f64,
+        turn: Turn<f64>,
         s: &[f64; STRAIN_VARIABLES],
         n: f64,
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
-        let k = Curvatures::new(theta_rad, self.bending_twist, s);
+        let k = Curvatures::new(turn, self.bending_twist, s);
         let mut out = SMatrix::zeros();
         let (v_x, w_x) = (s[at::V_X], s[at::W_X]);
         let growth = 1.0 + 0.5 * (v_x * v_x + w_x * w_x);
@@ -207,11 +248,11 @@ impl SectionStiffness {
     /// Second derivatives of [`Self::stretch_energy`], symmetric.
     pub(crate) fn stretch_stiffness(
         &self,
-        theta_rad: f64,
+        turn: Turn<f64>,
         s: &[f64; STRAIN_VARIABLES],
     ) -> SMatrix<f64, STRAIN_VARIABLES, STRAIN_VARIABLES> {
-        let e = self.stretch(theta_rad, s);
-        let mut out = self.tension_stiffness(theta_rad, s, self.axial * e.value);
+        let e = self.stretch(turn, s);
+        let mut out = self.tension_stiffness(turn, s, self.axial * e.value);
         add_square(&mut out, self.axial, &e.gradient);
         out
     }
@@ -283,11 +324,11 @@ mod tests {
     #[test]
     fn forces_are_the_gradient_of_the_energy() {
         let s = section();
-        let bending = slope(|z| [s.bending_energy(PITCH, z)]);
-        let force = s.bending_force(PITCH, &STATE);
-        let stretching = slope(|z| [s.stretch_energy(PITCH, z)]);
-        let tension = s.axial * s.stretch(PITCH, &STATE).value;
-        let pull = s.tension_force(PITCH, &STATE, tension);
+        let bending = slope(|z| [s.bending_energy(Turn::of(PITCH, z), z)]);
+        let force = s.bending_force(Turn::of(PITCH, &STATE), &STATE);
+        let stretching = slope(|z| [s.stretch_energy(Turn::of(PITCH, z), z)]);
+        let tension = s.axial * s.stretch(Turn::of(PITCH, &STATE), &STATE).value;
+        let pull = s.tension_force(Turn::of(PITCH, &STATE), &STATE, tension);
         for i in 0..STRAIN_VARIABLES {
             assert!((bending[i][0] - force[i]).abs() < 1e-14, "{i}");
             assert!((stretching[i][0] - pull[i]).abs() < 1e-13, "{i}");
@@ -298,13 +339,13 @@ mod tests {
     #[test]
     fn stiffness_is_the_gradient_of_the_force() {
         let s = section();
-        let bending = slope(|z| s.bending_force(PITCH, z));
-        let stiffness = s.bending_stiffness(PITCH, &STATE);
+        let bending = slope(|z| s.bending_force(Turn::of(PITCH, z), z));
+        let stiffness = s.bending_stiffness(Turn::of(PITCH, &STATE), &STATE);
         let stretching = slope(|z| {
-            let n = s.stretch(PITCH, z).value * Complex::from(s.axial);
-            s.tension_force(PITCH, z, n)
+            let n = s.stretch(Turn::of(PITCH, z), z).value * Complex::from(s.axial);
+            s.tension_force(Turn::of(PITCH, z), z, n)
         });
-        let tangent = s.stretch_stiffness(PITCH, &STATE);
+        let tangent = s.stretch_stiffness(Turn::of(PITCH, &STATE), &STATE);
         for i in 0..STRAIN_VARIABLES {
             for j in 0..STRAIN_VARIABLES {
                 assert!((bending[i][j] - stiffness[(j, i)]).abs() < 1e-14, "bending {i} {j}");

@@ -15,9 +15,9 @@ use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Tolerances of a point: effects are a part in a hundred of the loads.
-const TRIM_TOLERANCE: f64 = 1e-7;
-const PERIODICITY_TOLERANCE: f64 = 1e-9;
-const INFLOW_TOLERANCE: f64 = 1e-8;
+const TRIM_TOLERANCE: f64 = 1e-6;
+const PERIODICITY_TOLERANCE: f64 = 1e-8;
+const INFLOW_TOLERANCE: f64 = 1e-7;
 /// Azimuths of airloads and tip motion.
 const AZIMUTHS: usize = 72;
 /// Lift slope that the Lock number of a case is defined with.

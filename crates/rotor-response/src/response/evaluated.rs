@@ -2,7 +2,7 @@
 
 use crate::sections::air::{SectionFlow, SectionLoads};
 use crate::sections::flight_air::AirScratch;
-use crate::structure::equations::ForceRows;
+use crate::structure::equations::{AppliedLoad, ForceRows};
 use crate::structure::motion::{Foreshortening, ModalRows, Motion};
 use rotor_base::{LANES, Lanes};
 
@@ -44,4 +44,6 @@ pub(super) struct StationWork {
     pub(super) forces: ForceRows,
     /// Their share of the residual, mode by mode.
     pub(super) residual: Vec<f64>,
+    /// What the moderately deflected blade carries at them, by station, then by block of points.
+    pub(super) applied: Vec<AppliedLoad>,
 }

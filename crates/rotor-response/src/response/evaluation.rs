@@ -7,8 +7,8 @@ use crate::ResponseError;
 use crate::response::evaluated::{Revolution, StationWork, Work};
 use crate::response::system::ResponseSystem;
 use crate::sections::air::{SectionFlow, SectionLoads};
-use crate::sections::flight_air::{Lags, LoadLaw, POINTS_TOGETHER};
-use crate::structure::equations::{BladeState, BlockLoad, Equations, SpanLoads, StationLoad};
+use crate::sections::flight_air::{Lags, LoadLaw};
+use crate::structure::equations::{Applied, AppliedLoad, BlockLoad, Equations, StationLoad};
 use crate::structure::motion::{Foreshortening, ModalRows, Motion};
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
@@ -18,6 +18,8 @@ use rotor_fem::{ModalBlade, OrbitSamples, PeriodicSystem, PitchMotion};
 
 /// Stations that one thread takes together; their sum does not depend on the number of threads.
 const STATIONS_TOGETHER: usize = 16;
+/// Blocks of points that one thread takes together.
+const BLOCKS_TOGETHER: usize = 4;
 
 impl ResponseSystem<'_> {
     /// Air loads over the whole revolution.
@@ -50,6 +52,7 @@ impl ResponseSystem<'_> {
         together.resize_with(stations.div_ceil(STATIONS_TOGETHER), StationWork::default);
         let law = lags.map(|lags| LoadLaw { lags, ..self.load_law() });
         let summed = out.is_some() && blade.modal.is_none();
+        let applied = out.is_some() && blade.modal.is_some();
         let shared = (&*rows, &*foreshortening);
         let parts =
             together.par_iter_mut().zip(sections.par_chunks_mut(STATIONS_TOGETHER * blocks));
@@ -59,9 +62,13 @@ impl ResponseSystem<'_> {
                 let first = part * STATIONS_TOGETHER;
                 own.residual.clear();
                 own.residual.resize(if summed { self.dof() * lanes } else { 0 }, 0.0);
+                own.applied.clear();
                 let mut sections = sections.chunks_exact_mut(blocks).enumerate();
-                sections
-                    .try_for_each(|(k, loads)| self.at_station(first + k, law, shared, own, loads))
+                sections.try_for_each(|(k, loads)| {
+                    let applied = if applied { blocks } else { 0 };
+                    own.applied.resize(own.applied.len() + applied, AppliedLoad::default());
+                    self.at_station(first + k, law, shared, own, loads)
+                })
             })
             .collect();
         found.into_iter().collect::<Result<(), ResponseError>>()?;
@@ -73,7 +80,8 @@ impl ResponseSystem<'_> {
                 out.gemm(1.0, self.damping, &samples.qd, 1.0);
             }
             (Some(out), Some(modal)) => {
-                self.by_point(modal, samples, law.map(|_| &revolution), out);
+                self.by_block(modal, rows, together, out);
+                out.gemm(1.0, self.damping, &samples.qd, 1.0);
             }
             (None, _) => {}
         }
@@ -89,9 +97,9 @@ impl ResponseSystem<'_> {
         own: &mut StationWork,
         loads: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
-        let StationWork { motion, flows, air, forces, residual } = own;
+        let StationWork { motion, flows, air, forces, residual, applied } = own;
         let lifting = law.zip(i.checked_sub(self.air.first_station));
-        if lifting.is_none() && residual.is_empty() {
+        if lifting.is_none() && residual.is_empty() && applied.is_empty() {
             return Ok(());
         }
         motion.fill_station(self.blade, i, rows, foreshortening);
@@ -107,40 +115,44 @@ impl ResponseSystem<'_> {
             }
             self.air.loads(station, flows, law, air, loads)?;
         }
+        let (blade, couplings, mass) = (self.blade, self.couplings, self.mass);
+        let at = Loaded { system: self, i, motion, loads: law.is_some().then_some(&*loads) };
+        if !applied.is_empty() {
+            let last = applied.len() - self.blocks.len();
+            let out = &mut applied[last..];
+            Arch::new().dispatch(Applied { blade, i, motion, at, out });
+            return Ok(());
+        }
         if residual.is_empty() {
             return Ok(());
         }
-        let (blade, couplings, mass) = (self.blade, self.couplings, self.mass);
-        let at = Loaded { system: self, i, motion, loads: law.is_some().then_some(&*loads) };
         let equations = Equations { blade, couplings, mass };
         equations.add_station(i, motion, (rows, foreshortening), at, (forces, residual));
         Ok(())
     }
 
-    /// Residual of the moderately deflected blade, point by point.
-    fn by_point(
+    /// Residual of the moderately deflected blade without damping, block by block of points.
+    fn by_block(
         &self,
         modal: &ModalBlade,
-        samples: &OrbitSamples,
-        revolution: Option<&Revolution>,
+        rows: &ModalRows,
+        together: &[StationWork],
         out: &mut DMatrix<f64>,
     ) {
         let equations = Equations { blade: self.blade, couplings: self.couplings, mass: self.mass };
-        let columns = out.as_mut_slice().par_chunks_mut(self.dof()).with_min_len(POINTS_TOGETHER);
-        let scratch = || (Motion::default(), SpanLoads::default(), Vec::new());
-        columns.enumerate().for_each_init(scratch, |(motion, loads, sections), (p, column)| {
-            motion.fill(self.blade, samples.at(p));
-            loads.clear(self.blade.grid.len());
-            if let Some(revolution) = revolution {
-                sections.clear();
-                sections.extend(revolution.at(p));
-                self.span_loads(p, motion, sections, loads);
+        let (dof, blocks) = (self.dof(), self.blocks.len());
+        let columns = out.as_mut_slice().par_chunks_mut(dof * LANES);
+        columns.with_min_len(BLOCKS_TOGETHER).enumerate().for_each(|(block, columns)| {
+            let stations = together.iter().flat_map(|part| part.applied.chunks_exact(blocks));
+            let loads: Vec<AppliedLoad> = stations.map(|station| station[block]).collect();
+            let pitch = self.blocks[block].air.pitch;
+            let left = equations.moderate_residual(modal, (rows, block), pitch, &loads);
+            for (lane, column) in columns.chunks_exact_mut(dof).enumerate() {
+                for (value, left) in column.iter_mut().zip(&left) {
+                    *value = left.0[lane];
+                }
             }
-            let pitch = self.points[p].air.pitch;
-            let state = BladeState { motion, pitch, loads };
-            equations.moderate_residual(modal, state, samples.at(p), column);
         });
-        out.gemm(1.0, self.damping, &samples.qd, 1.0);
     }
 }
 

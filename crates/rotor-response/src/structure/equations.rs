@@ -107,6 +107,51 @@ impl<T: Number> StationLoad<T> {
     }
 }
 
+/// What the moderately deflected blade carries at a station in a block of lanes, per length: force in the axes of the coned
+/// blade and nose-up moment, and moments on the slopes of lag and flap.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct AppliedLoad {
+    pub(crate) load: [Lanes; 4],
+    pub(crate) slope: [Lanes; 2],
+}
+
+impl AppliedLoad {
+    /// Of loads that stand normal to the deflected blade, and its weight; the motion of the station stands in blocks of lanes.
+    #[inline(always)]
+    fn of(
+        blade: &ResponseBlade,
+        (i, motion, block): (usize, &Motion, usize),
+        load: &StationLoad<Lanes>,
+    ) -> Self {
+        let [x, y, z] = load.gravity.map(|g| g * blade.mass[i]);
+        let (w_x, v_x): (Lanes, Lanes) = (motion.w.slope(block), motion.v.slope(block));
+        let axial = load.axial - w_x * load.fz - v_x * load.fy;
+        Self { load: [axial + x, load.fy + y, load.fz + z, load.moment], slope: load.slope }
+    }
+}
+
+/// Loads of one station in all blocks of lanes, compiled for the vector unit.
+pub(crate) struct Applied<'a, L> {
+    pub(crate) blade: &'a ResponseBlade,
+    pub(crate) i: usize,
+    pub(crate) motion: &'a Motion,
+    /// Pitch and loads of a block.
+    pub(crate) at: L,
+    pub(crate) out: &'a mut [AppliedLoad],
+}
+
+impl<L: BlockLoad> WithSimd for Applied<'_, L> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { blade, i, motion, at, out } = self;
+        for (block, out) in out.iter_mut().enumerate() {
+            *out = AppliedLoad::of(blade, (i, motion, block), &at.at(block).1);
+        }
+    }
+}
+
 /// What a station does on value, slope and curvature of flap, lag and torsion, per length.
 #[derive(Debug, Clone, Copy)]
 struct StationForce<T> {
@@ -227,8 +272,8 @@ pub(crate) struct Equations<'a> {
 }
 
 impl Equations<'_> {
-    /// Generalised residual of one azimuth of the moderately deflected blade without the constant mass part and without
-    /// damping.
+    /// Generalised residual of the moderately deflected blade in a block of lanes, mode by mode, without the constant mass part
+    /// and without damping; `loads` are those at the stations.
     ///
     /// ```text
     /// Q(q, q', q'') - M q'' - virtual work of (F_x, F_y, F_z, M),   F_x = -w_x F_z - v_x F_y
@@ -237,27 +282,23 @@ impl Equations<'_> {
     pub(crate) fn moderate_residual(
         &self,
         modal: &ModalBlade,
-        state: BladeState<'_>,
-        [q, qd, qdd]: [&[f64]; 3],
-        out: &mut [f64],
-    ) {
-        let BladeState { motion, pitch, loads } = state;
-        let coordinates = ModalMotion { value: q, rate: qd, acceleration: qdd };
-        let own = modal.force(coordinates, pitch);
-        let applied: Vec<[f64; 4]> = (0..loads.fz.len())
-            .map(|i| {
-                let [x, y, z] = loads.force(self.blade, motion, i);
-                [x, y, z, loads.moment[i]]
-            })
-            .collect();
-        let work = modal.applied(q, pitch, &applied);
-        for (i, value) in out.iter_mut().enumerate() {
-            let constant: f64 = self.mass.row(i).iter().zip(qdd).map(|(m, a)| m * a).sum();
-            *value = own[i] - constant - work[i];
+        (rows, block): (&ModalRows, usize),
+        pitch: PitchMotion<Lanes>,
+        loads: &[AppliedLoad],
+    ) -> Vec<Lanes> {
+        let [value, rate, acceleration] = rows.block(block);
+        let motion = ModalMotion { value: &value, rate: &rate, acceleration: &acceleration };
+        let applied: Vec<[Lanes; 4]> = loads.iter().map(|own| own.load).collect();
+        let mut left = modal.unbalanced_side_by_side(motion, pitch, &applied);
+        for (value, mass) in left.iter_mut().zip(self.mass.row_iter()) {
+            for (m, a) in mass.iter().zip(&acceleration) {
+                *value -= *a * *m;
+            }
         }
         if self.blade.flaps_beside_blade() {
-            subtract_slope_work(self.blade, loads, out);
+            subtract_slope_work(self.blade, loads, &mut left);
         }
+        left
     }
 
     /// Adds what one station does in the equations of `Linear` and `Full` to the generalised residual, mode by mode
@@ -283,15 +324,16 @@ impl Equations<'_> {
         out: &mut [f64],
     ) {
         let blade = self.blade;
-        let mut motion = Motion::default();
         if let Some(modal) = &blade.modal {
-            motion.fill(blade, coordinates);
-            let mut loads = SpanLoads::default();
-            loads.clear(blade.grid.len());
-            let state = BladeState { motion: &motion, pitch, loads: &loads };
-            self.moderate_residual(modal, state, coordinates, out);
+            let [value, rate, acceleration] = coordinates;
+            let motion = ModalMotion { value, rate, acceleration };
+            let own = modal.force(motion, pitch);
+            for ((out, own), mass) in out.iter_mut().zip(own).zip(self.mass.row_iter()) {
+                *out = own - mass.iter().zip(acceleration).map(|(m, a)| m * a).sum::<f64>();
+            }
             return;
         }
+        let mut motion = Motion::default();
         let (mut rows, mut shortening) = (ModalRows::default(), Foreshortening::default());
         rows.fill_state(coordinates);
         shortening.fill(blade, self.couplings, &rows);
@@ -312,12 +354,13 @@ impl Equations<'_> {
 }
 
 /// Takes the work of moments on the slopes of lag and flap off a residual.
-fn subtract_slope_work(blade: &ResponseBlade, loads: &SpanLoads, out: &mut [f64]) {
-    let modes = [(&blade.flap, &loads.slope[1]), (&blade.lag, &loads.slope[0])];
+fn subtract_slope_work(blade: &ResponseBlade, loads: &[AppliedLoad], out: &mut [Lanes]) {
+    let modes = [(&blade.flap, 1), (&blade.lag, 0)];
     let shapes = modes.into_iter().flat_map(|(of, load)| of.slope.iter().map(move |s| (s, load)));
     for (value, (shape, load)) in out.iter_mut().zip(shapes) {
-        let parts = blade.grid.weight().iter().zip(shape).zip(load);
-        *value -= parts.map(|((w, s), f)| w * s * f).sum::<f64>();
+        for ((weight, slope), own) in blade.grid.weight().iter().zip(shape).zip(loads) {
+            *value -= own.slope[load] * (weight * slope);
+        }
     }
 }
 

@@ -6,7 +6,7 @@
 use crate::Couplings;
 use crate::structure::blade::{ResponseBlade, Shapes};
 use pulp::{Arch, Simd, WithSimd};
-use rotor_base::{LANES, Number};
+use rotor_base::{LANES, Lanes, Number};
 use rotor_fem::OrbitSamples;
 use std::ops::Range;
 
@@ -118,6 +118,12 @@ impl ModalRows {
     #[inline(always)]
     fn from(&self, part: usize, mode: usize) -> impl Iterator<Item = &[f64]> {
         self.parts[part].chunks_exact(self.lanes).skip(mode)
+    }
+
+    /// Coordinates, rates and accelerations of all modes in a block of lanes.
+    pub(crate) fn block(&self, block: usize) -> [Vec<Lanes>; 3] {
+        let of = |part: usize| self.from(part, 0).map(|row| Lanes::read(row, block)).collect();
+        [of(0), of(1), of(2)]
     }
 
     /// Sum of the rows of a family, each times what `factor` says of its number in the family.
