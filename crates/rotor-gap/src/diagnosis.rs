@@ -24,6 +24,8 @@ pub struct CaseDiagnosis {
     pub found: PointFinding,
     /// Names of the other levels of fidelity.
     pub alternatives: Vec<&'static str>,
+    /// Standard deviations by which uncertain inputs were moved to explain the points; 0 where they were not.
+    pub inputs: Vec<f64>,
     /// The case with what was found, if any of it is in a case.
     pub extended: Option<Case>,
 }

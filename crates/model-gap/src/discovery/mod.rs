@@ -21,7 +21,7 @@ pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
 pub use screen::Screened;
 pub use thresholds::needed_to_separate;
-pub(crate) use thresholds::{SURELY, needed_between};
+pub(crate) use thresholds::{AS_LIKELY, SURELY, needed_between};
 pub use verdict::{
     Alternative, Compared, Confidence, Finding, FittedParameter, Found, FoundClass, StandsOut,
     Verdict,

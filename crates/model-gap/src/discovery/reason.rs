@@ -119,6 +119,17 @@ pub enum Reason {
         /// Explained share, at most 1.
         share: f64,
     },
+    /// What a cause explains is small beside what nothing explains.
+    #[error(
+        "{cause} takes {:.0} % as much off the error of the readings as is left of it: the name is tentative",
+        .share * 100.0
+    )]
+    SmallBesideRest {
+        /// The cause.
+        cause: &'static str,
+        /// Mean square that it takes off, over that which is left beyond the noise.
+        share: f64,
+    },
     /// Runs stand out with the named causes too.
     #[error(
         "{runs} of the runs stand out with the named causes too, the worst by {times:.1} \

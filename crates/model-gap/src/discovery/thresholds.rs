@@ -65,7 +65,7 @@ pub(super) const RIVAL_LACK: f64 = 0.4;
 /// Share of the drop beyond which structure of the base model does not make two causes change places.
 pub(super) const SWAY_SHARE: f64 = 0.1;
 /// Part of the discrimination threshold within which the other cause is as likely.
-pub(super) const AS_LIKELY: f64 = 0.5;
+pub(crate) const AS_LIKELY: f64 = 0.5;
 /// Multiple of the discrimination threshold that is required for a sure name: what surrogates can do is known
 /// from five of them.
 pub(crate) const SURELY: f64 = 1.25;

@@ -4,8 +4,13 @@ use super::floor::Floor;
 use super::next::{NextPoints, next_points};
 use super::predicted::Tables;
 use super::table::{PointTable, SuspectParameter};
-use crate::discovery::{Discovery, Finding, FittedParameter, Found, Settings, Yardstick};
+use crate::discovery::{
+    Confidence, Discovery, Finding, FittedParameter, Found, Reason, Settings, Simulator, Yardstick,
+};
 use crate::{Candidate, GapError};
+
+/// Part of what is left of the error of the readings that every cause must take off it to be named with confidence.
+const BESIDE_REST: f64 = 0.5;
 
 /// What was found at points of test.
 #[derive(Debug, Clone)]
@@ -36,6 +41,23 @@ pub struct ChannelGain {
     pub rms_after: f64,
     /// Both over the standard deviations of the values.
     pub in_deviations: [f64; 2],
+}
+
+impl PointFinding {
+    /// Makes names tentative that inputs that are not known well may stand in the place of: `higher` is their chi-square over
+    /// that of the causes, and the least that would tell them apart.
+    pub(super) fn doubt_beside_inputs(&mut self, higher: [f64; 2]) {
+        let Some(first) = self.finding.causes.first() else { return };
+        let [delta_chi2, threshold] = higher;
+        self.finding.confidence = Confidence::Tentative;
+        self.finding.reasons.push(Reason::NotExcluded {
+            cause: self.candidates[first.candidate].id,
+            other: "what is stated as uncertain",
+            is_open: delta_chi2 < threshold,
+            delta_chi2,
+            threshold,
+        });
+    }
 }
 
 impl PointTable {
@@ -90,6 +112,13 @@ impl PointTable {
             Some(given) => discovery.refit(given)?,
             None => discovery.find()?,
         };
+        if finding.confidence == Confidence::Confident
+            && let Some(reason) =
+                self.small_beside_rest((&floor, &tables), &candidates, &finding)?
+        {
+            finding.confidence = Confidence::Tentative;
+            finding.reasons.push(reason);
+        }
         let next = next_points(self, &floor, &candidates, &finding)?;
         let gains = self.gains(&tables, &finding);
         let measured = tables.rows.iter().map(|(p, _)| *p).collect();
@@ -101,6 +130,43 @@ impl PointTable {
             }
         }
         Ok(PointFinding { finding, candidates, measured, gains, next })
+    }
+
+    /// What takes less off the error of the readings than [`BESIDE_REST`] of what is left of it, on points that the fits have
+    /// not seen: all causes together, or one after the first. The floor says how large an error of the simulation is, not what it
+    /// looks like.
+    fn small_beside_rest(
+        &self,
+        (floor, tables): (&Floor, &Tables<'_>),
+        candidates: &[Candidate],
+        finding: &Finding,
+    ) -> Result<Option<Reason>, GapError> {
+        let Some([before, left]) = &finding.held_out_residuals else { return Ok(None) };
+        let (before, left) = (before.concat(), left.concat());
+        let over = tables.signal(|p, c| tables.sigma[p][c].powi(2) / self.points[p].deviation[c]);
+        let over = over.concat();
+        // mean square over the deviations of the readings, times their number
+        let square = |signal: &[f64]| -> f64 {
+            signal.iter().zip(&over).map(|(value, over)| (value * over).powi(2)).sum()
+        };
+        let kept = square(&left);
+        let rest = kept - left.len() as f64;
+        let mut taken = vec![square(&before) - kept];
+        let all = tables.predict(&finding.effects)?.concat();
+        for k in 1..finding.effects.len() {
+            let mut others = finding.effects.clone();
+            others.remove(k);
+            let without = tables.predict(&others)?.concat();
+            let own: Vec<f64> = all.iter().zip(&without).map(|(a, b)| a - b).collect();
+            let beyond = floor.beyond(tables, &own)?;
+            let with: Vec<f64> = left.iter().zip(&beyond).map(|(a, b)| a + b).collect();
+            taken.push(square(&with) - kept);
+        }
+        let small = taken.iter().position(|taken| *taken < BESIDE_REST * rest);
+        Ok(small.map(|k| Reason::SmallBesideRest {
+            cause: candidates[finding.effects[k].candidate].id,
+            share: taken[k] / rest,
+        }))
     }
 
     /// Lets what only says which suspect it is span those of the same name that do about as well.

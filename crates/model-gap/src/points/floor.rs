@@ -163,13 +163,46 @@ impl Sets {
 
 /// A vector less what columns explain of it, each with a factor of standard deviation 1.
 fn beyond(vector: &[f64], columns: &[&Vec<f64>]) -> Result<Vec<f64>, GapError> {
+    let (taken, _) = fitted(vector, columns, &[])?;
+    Ok(vector.iter().zip(taken.as_slice()).map(|(a, b)| a - b).collect())
+}
+
+/// What columns explain of a vector, and their factors: each of standard deviation 1, the first about less than `moved`.
+fn fitted(
+    vector: &[f64],
+    columns: &[&Vec<f64>],
+    moved: &[f64],
+) -> Result<(DVector<f64>, DVector<f64>), GapError> {
     let own = DVector::from_column_slice(vector);
     let matrix = DMatrix::from_fn(vector.len(), columns.len(), |i, k| columns[k][i]);
     let normal = matrix.tr_mul(&matrix) + DMatrix::identity(columns.len(), columns.len());
     let solver =
         Cholesky::new(normal).ok_or(GapError::NotPositiveDefinite { columns: columns.len() })?;
-    let taken = &matrix * solver.solve(&matrix.tr_mul(&own));
-    Ok((own - taken).as_slice().to_vec())
+    let mut asked = matrix.tr_mul(&own);
+    for (asked, moved) in asked.iter_mut().zip(moved) {
+        *asked -= moved;
+    }
+    let factors = solver.solve(&asked);
+    Ok((&matrix * &factors, factors))
+}
+
+/// Chi-square that columns leave of a vector, each with a factor of standard deviation 1, the first of which stand at `moved`
+/// already; and where the fit puts these.
+pub(super) fn explained(
+    vector: &[f64],
+    columns: &[Vec<f64>],
+    moved: &[f64],
+) -> Result<(f64, Vec<f64>), GapError> {
+    let columns: Vec<&Vec<f64>> = columns.iter().collect();
+    let (taken, factors) = fitted(vector, &columns, moved)?;
+    let mut factors = factors.as_slice().to_vec();
+    for (factor, moved) in factors.iter_mut().zip(moved) {
+        *factor += moved;
+    }
+    let left: f64 = vector.iter().zip(taken.as_slice()).map(|(a, b)| (a - b).powi(2)).sum();
+    let cost = left + factors.iter().map(|own| own * own).sum::<f64>();
+    factors.truncate(moved.len());
+    Ok((cost, factors))
 }
 
 /// Conditions that vary, from -1 to 1 over the table, each with its Chebyshev polynomials of first and second degree, by
@@ -265,8 +298,8 @@ impl Floor {
         Ok(Self { sigma, model_error, sets, smooth_error })
     }
 
-    /// Columns of the nuisance, each as a signal.
-    fn nuisance(&self, tables: &Tables<'_>) -> Vec<Signal> {
+    /// Columns of the nuisance, each as a signal; the inputs that are not known well stand first.
+    pub(super) fn nuisance(&self, tables: &Tables<'_>) -> Vec<Signal> {
         let table = tables.table;
         let base = &table.predicted;
         let away = |grid: &Grid| tables.signal(|p, c| grid[p][c] - base[p][c]);
@@ -319,12 +352,18 @@ impl Floor {
         columns
     }
 
+    /// What calibrations and errors of the simulation do not explain of a signal, its values in a row.
+    pub(super) fn beyond(&self, tables: &Tables<'_>, signal: &[f64]) -> Result<Vec<f64>, GapError> {
+        let columns: Vec<Vec<f64>> =
+            self.nuisance(tables).into_iter().map(|own| own.concat()).collect();
+        beyond(signal, &columns.iter().collect::<Vec<_>>())
+    }
+
     /// The measured points as traces of the engine; and how many columns their nuisance has. All of these count as
     /// calibrations: where one of them must move far, nothing is denied with confidence.
     pub(super) fn traces(&self, tables: &Tables<'_>) -> (Vec<Trace>, usize) {
         let columns = self.nuisance(tables);
-        let points = &tables.table.points;
-        let measured = tables.signal(|p, c| points[p].measured[c].unwrap_or_default());
+        let measured = tables.measured();
         let one = |(experiment, measured): (usize, Vec<f64>)| {
             let nuisance =
                 DMatrix::from_fn(measured.len(), columns.len(), |i, k| columns[k][experiment][i]);

@@ -3,7 +3,7 @@
 use super::cause::PointCause;
 use super::finding::PointFinding;
 use super::table::{Channel, Grid, Instrument, Point, PointTable, Suspect, SuspectParameter};
-use crate::discovery::Found;
+use crate::discovery::{Found, Verdict};
 use crate::{Effect, GapError, places};
 
 /// Rounds in which the effects of what is left are computed anew where they were found.
@@ -38,8 +38,10 @@ pub struct KindQuestion<'a, K: PointKind> {
     pub causes: &'a [PointCause<K::Model>],
     /// Other models that are thought as good, with their names. One that cannot be read is left out.
     pub alternatives: Vec<(&'static str, K::Model)>,
-    /// The model with one input moved by its standard deviation, one for each such input.
-    pub uncertain: Vec<K::Model>,
+    /// How many inputs are not known well.
+    pub uncertain: usize,
+    /// The model with each of them moved by so many of its standard deviations.
+    pub with_inputs: &'a dyn Fn(&[f64]) -> Result<K::Model, K::Error>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// What they are calibrated by.
@@ -65,6 +67,8 @@ pub struct KindFinding<M> {
     pub found: PointFinding,
     /// Names of the other models.
     pub alternatives: Vec<&'static str>,
+    /// Standard deviations by which the inputs that are not known well were moved to explain the points; 0 where they were not.
+    pub inputs: Vec<f64>,
     /// The model with what was found; as it was where nothing was.
     pub extended: M,
 }
@@ -83,23 +87,49 @@ impl<K: PointKind> KindQuestion<'_, K> {
             [] => table.find(),
             given => table.refit(given),
         };
-        let mut found = find(&table)?;
-        for _ in 0..ROUNDS {
-            if !self.refine(&mut table, &found) {
-                break;
+        let mut found = self.refined(self.model, &mut table, &find)?;
+        let mut inputs = vec![0.0; self.uncertain];
+        let is_asked = self.uncertain > 0 && only.is_empty();
+        if is_asked && found.finding.verdict != Verdict::NothingMissing {
+            (self.begun)(95, "whether inputs that are not known well explain it");
+            match self.explaining_inputs(&table, &found)? {
+                Some(moved) if moved.is_as_likely() => {
+                    table.move_base(&moved);
+                    found = self.refined(&moved.model, &mut table, &find)?;
+                    inputs = moved.by;
+                }
+                Some(moved) => found.doubt_beside_inputs(moved.higher),
+                None => {}
             }
-            found = find(&table)?;
         }
         let mut extended = self.model.clone();
         for effect in &found.finding.effects {
             extended = self.causes[effect.candidate].applied(&extended, &effect.values);
         }
-        Ok(KindFinding { table, found, alternatives, extended })
+        Ok(KindFinding { table, found, alternatives, inputs, extended })
+    }
+
+    /// What is found with effects on a model that are computed anew where they were found.
+    fn refined(
+        &self,
+        model: &K::Model,
+        table: &mut PointTable,
+        find: &dyn Fn(&PointTable) -> Result<PointFinding, GapError>,
+    ) -> Result<PointFinding, GapError> {
+        let mut found = find(table)?;
+        for _ in 0..ROUNDS {
+            if !self.refine(model, table, &found) {
+                break;
+            }
+            found = find(table)?;
+        }
+        Ok(found)
     }
 
     /// The points with what the simulation says of them, with some of each cause, and with what it is not sure of.
     fn table(&self) -> Result<(PointTable, Vec<&'static str>), K::Error> {
         let begun = self.begun;
+        let uncertain = self.further(&vec![0.0; self.uncertain])?;
         begun(0, "the simulation at every point");
         let predicted = self.kind.read(self.model)?;
         begun(5, "other levels of fidelity");
@@ -112,7 +142,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             }
         }
         begun(15, "inputs that are not known well");
-        let uncertain = self.uncertain.iter().map(|model| self.kind.read(model));
+        let uncertain = uncertain.iter().map(|model| self.kind.read(model));
         let uncertain = uncertain.collect::<Result<_, _>>()?;
         let mut suspects = Vec::with_capacity(self.causes.len());
         for (k, cause) in self.causes.iter().enumerate() {
@@ -177,7 +207,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
 
     /// Computes effects anew where they were found: of the causes found, of what may be it instead, and of those that fitted
     /// alone explain a good part. False where none of them has moved.
-    fn refine(&self, table: &mut PointTable, found: &PointFinding) -> bool {
+    fn refine(&self, model: &K::Model, table: &mut PointTable, found: &PointFinding) -> bool {
         let finding = &found.finding;
         let rivals = finding.causes.iter().flat_map(|own: &Found| &own.rivals);
         let mut effects: Vec<&Effect> = rivals.flat_map(|rival| &rival.effects).collect();
@@ -188,15 +218,20 @@ impl<K: PointKind> KindQuestion<'_, K> {
         effects.extend(singles.iter().filter(is_good).take(SURVIVORS).map(|own| &own.0));
         let mut moved = false;
         for effect in effects {
-            moved |=
-                self.recompute(&mut table.suspects[effect.candidate], effect, &table.predicted);
+            let suspect = &mut table.suspects[effect.candidate];
+            moved |= self.recompute(suspect, effect, (model, &table.predicted));
         }
         moved
     }
 
     /// Computes an effect anew at its values, where these are off those it is known at. What its parameters do together beyond
     /// the sum of each is put to the last of them, so that the sum is right there. False where nothing was computed.
-    fn recompute(&self, suspect: &mut Suspect, effect: &Effect, base: &Grid) -> bool {
+    fn recompute(
+        &self,
+        suspect: &mut Suspect,
+        effect: &Effect,
+        (model, base): (&K::Model, &Grid),
+    ) -> bool {
         let (cause, values) = (&self.causes[effect.candidate], &effect.values);
         let is_off = |(own, &value): (&SuspectParameter, &f64)| {
             let Some(size) = own.tables.first().map(|table| (table.0 - own.none).abs()) else {
@@ -209,7 +244,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
         if !suspect.parameters.iter().zip(values).any(is_off) {
             return false;
         }
-        let read = |values: &[f64]| self.kind.read(&cause.applied(self.model, values)).ok();
+        let read = |values: &[f64]| self.kind.read(&cause.applied(model, values)).ok();
         let none = cause.none();
         let acting: Vec<usize> = (0..values.len())
             .filter(|&k| !suspect.parameters[k].tables.is_empty() && values[k] - none[k] != 0.0)

@@ -12,6 +12,7 @@
 mod cause;
 mod finding;
 mod floor;
+mod inputs;
 mod kind;
 mod names;
 mod next;

@@ -76,6 +76,11 @@ impl<'a> Tables<'a> {
         self.rows.iter().map(row).collect()
     }
 
+    /// What was measured.
+    pub(super) fn measured(&self) -> Signal {
+        self.signal(|p, c| self.table.points[p].measured[c].unwrap_or_default())
+    }
+
     /// The candidates of the suspects.
     pub(super) fn candidates(&self) -> Vec<Candidate> {
         let one = |own: &Suspect| {

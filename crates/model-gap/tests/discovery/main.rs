@@ -1,6 +1,7 @@
 //! Decisions of the engine on a system whose answers are known.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod inputs;
 mod names;
 mod points;
 mod refusals;

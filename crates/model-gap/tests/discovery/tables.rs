@@ -338,6 +338,50 @@ fn what_another_model_thought_as_good_explains_is_no_discovery() {
     assert!(names(&table.find().unwrap()).is_empty());
 }
 
+/// The floor says how large an error of the simulation is, not what it looks like: of a second cause that is small beside what is
+/// left nothing is sure.
+#[test]
+fn a_second_cause_that_is_small_beside_what_is_left_is_tentative() {
+    let sweep = Sweep { points: 60, ..Sweep::default() };
+    let deviation = sweep.deviation();
+    let mut state = 77;
+    let mut pattern = |size: f64| -> Grid {
+        let mut row = || deviation.map(|own| own * size * noise(&mut state)).to_vec();
+        (0..sweep.points).map(|_| row()).collect()
+    };
+    let (shown, hidden) = (pattern(8.0), pattern(3.0));
+    let both = |mu: f64, speed: f64| {
+        let (mut own, base) = (with("drag", 3.0, mu, speed), simulated(mu, speed));
+        let other = with("stiffness", 1.25, mu, speed);
+        for ((own, other), base) in own.iter_mut().zip(other).zip(base) {
+            *own += other - base;
+        }
+        own
+    };
+    let found = |rest: f64| {
+        let mut table = sweep.table(5, both);
+        let moved = |(row, other): (&Vec<f64>, &Vec<f64>)| -> Vec<f64> {
+            row.iter().zip(other).map(|(a, b)| a + b).collect()
+        };
+        table.alternatives = vec![table.predicted.iter().zip(&shown).map(moved).collect()];
+        for (point, off) in table.points.iter_mut().zip(&hidden) {
+            let read = point.measured.iter_mut().flatten();
+            read.zip(off).for_each(|(value, off)| *value += rest * off);
+        }
+        table.find().unwrap()
+    };
+    let (hidden, clear) = (found(1.0), found(0.0));
+    for own in [&hidden, &clear] {
+        let mut causes = names(own);
+        causes.sort_unstable();
+        assert_eq!(causes, ["drag", "stiffness"]);
+    }
+    assert!(is_confident(&clear), "{:?}", clear.finding.reasons);
+    assert!(!is_confident(&hidden));
+    let why = hidden.finding.reasons.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert!(why.iter().any(|own| own.contains("off the error of the readings")), "{why:?}");
+}
+
 /// Control off and on at a few speeds: a drive turns the loads by a part of its size, a suspect too. Two models differ by a fifth of
 /// every load at each speed, both drives alike, so that levels say nothing.
 fn driven(seed: u64, gain: f64, are_sets: bool) -> PointTable {

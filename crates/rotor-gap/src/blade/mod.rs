@@ -15,7 +15,7 @@ pub use frequencies::Frequencies;
 use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
 use crate::error::RotorGapError;
 use crate::properties::OfCase;
-use crate::rotor::moved;
+use crate::rotor::with_inputs;
 use measured_data::Scatter;
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
 use rotor_study::case::{Case, UncertainField};
@@ -104,8 +104,7 @@ pub fn diagnose_blade(
         own.instrument = 0;
     }
     let with_case = |case| BladeModel { case, ..model.clone() };
-    let uncertain = question.uncertain.iter().enumerate();
-    let uncertain = uncertain.map(|(number, own)| moved(own, number, &model.case).map(with_case));
+    let with_inputs = |by: &[f64]| with_inputs(&model.case, question.uncertain, by).map(with_case);
     let causes = causes::library(&model);
     let asked = KindQuestion {
         kind: &kind,
@@ -115,7 +114,8 @@ pub fn diagnose_blade(
             "modes about the undeformed blade",
             BladeModel { about: AboutState::Undeformed, ..model.clone() },
         )],
-        uncertain: uncertain.collect::<Result<_, _>>()?,
+        uncertain: question.uncertain.len(),
+        with_inputs: &with_inputs,
         channels,
         instruments: vec![Instrument { name: "frequency_hz".to_owned(), gain: COUNTER, zero: 0.0 }],
         conditions: vec!["rotor_speed_rpm".to_owned()],
@@ -124,8 +124,8 @@ pub fn diagnose_blade(
         only: question.only,
         begun: question.begun,
     };
-    let KindFinding { table, found, alternatives, mut extended } = asked.answer()?;
+    let KindFinding { table, found, alternatives, inputs, mut extended } = asked.answer()?;
     extended.case.structure.modes = question.case.structure.modes.clone();
     let extended = (extended.case != *question.case).then_some(extended.case);
-    Ok(CaseDiagnosis { table, found, alternatives, extended })
+    Ok(CaseDiagnosis { table, found, alternatives, inputs, extended })
 }

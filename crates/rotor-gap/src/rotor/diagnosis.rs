@@ -5,7 +5,7 @@ use crate::rotor::causes::{Occasion, RotorCause, library};
 use crate::rotor::feedback::{WonBack, won_back};
 use crate::rotor::flight::{Actuators, Flown, amplitude};
 use crate::rotor::model::RotorModel;
-use crate::rotor::spread::{alternatives, moved, stated};
+use crate::rotor::spread::{alternatives, moved_inputs, stated, with_inputs};
 use crate::rotor::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
 use measured_data::Scatter;
 use model_gap::discovery::Verdict;
@@ -58,6 +58,8 @@ pub struct RotorDiagnosis {
     pub aside: Vec<Aside>,
     /// Names of the other levels of fidelity.
     pub alternatives: Vec<&'static str>,
+    /// What uncertain inputs were moved by to explain the points, in words; none where they were not.
+    pub moved: Option<String>,
     /// The case with what was found, if any of it is in a case.
     pub extended: Option<Case>,
     /// What control reaches with hysteresis like that of the actuator at hand, where it was named.
@@ -69,6 +71,7 @@ impl RotorDiagnosis {
     /// aside.
     pub fn notes(&self, uncertain: &[UncertainField], from: &str) -> Vec<String> {
         let mut notes = vec![stated(uncertain, from)];
+        notes.extend(self.moved.clone());
         if !self.alternatives.is_empty() {
             notes.push(format!("as good: {}", self.alternatives.join(", ")));
         }
@@ -100,7 +103,7 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
     let (flights, aside) = Flights::of(question)?;
     let causes = flights.causes();
     let with_case = |case| RotorModel { case, ..flights.model.clone() };
-    let uncertain = uncertain.iter().enumerate().map(|(number, own)| moved(own, number, case));
+    let with_inputs = |by: &[f64]| with_inputs(case, uncertain, by).map(with_case);
     let instrument = |name: &String| Instrument { name: name.clone(), gain: GAIN, zero: 0.0 };
     let asked = KindQuestion {
         kind: &flights,
@@ -110,7 +113,8 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
             .into_iter()
             .map(|(name, own)| (name, with_case(own)))
             .collect(),
-        uncertain: uncertain.map(|own| own.map(with_case)).collect::<Result<_, _>>()?,
+        uncertain: uncertain.len(),
+        with_inputs: &with_inputs,
         channels: flights.named.clone(),
         instruments: flights.instruments.iter().map(instrument).collect(),
         conditions: sweep.conditions.iter().map(|(name, _)| name.clone()).collect(),
@@ -119,7 +123,7 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         only: question.only,
         begun: question.begun,
     };
-    let KindFinding { table, found, alternatives, extended } = asked.answer()?;
+    let KindFinding { table, found, alternatives, inputs, extended } = asked.answer()?;
     let is_at_hand = (extended.drive.hysteresis - 1.0).abs() < AT_HAND;
     let won_back = match &question.hysteretic {
         Some(hysteretic) if is_at_hand && found.finding.verdict == Verdict::Named => {
@@ -129,7 +133,8 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         _ => Vec::new(),
     };
     let extended = case_of(extended, &flights.model);
-    Ok(RotorDiagnosis { table, found, causes, aside, alternatives, extended, won_back })
+    let moved = moved_inputs(uncertain, &inputs);
+    Ok(RotorDiagnosis { table, found, causes, aside, alternatives, moved, extended, won_back })
 }
 
 /// The case of an extended model; none where it is that of the model as it was.

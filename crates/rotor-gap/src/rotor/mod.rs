@@ -26,5 +26,7 @@ pub use feedback::WonBack;
 pub use flight::predict;
 pub use model::{FlapDriveModel, LoadPath, RotorModel};
 pub(crate) use spread::in_percent;
-pub use spread::{USUAL_UNCERTAIN, alternatives, moved, stated, usual_uncertain};
+pub use spread::{
+    USUAL_UNCERTAIN, alternatives, moved_inputs, stated, usual_uncertain, with_inputs,
+};
 pub use sweep::{Aside, Sweep, SweepChannel, SweepPoint};

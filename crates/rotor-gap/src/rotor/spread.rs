@@ -39,17 +39,45 @@ pub fn stated(uncertain: &[UncertainField], from: &str) -> String {
     format!("uncertain (1 sd, {from}): {}", all.join(", "))
 }
 
-/// The case with an uncertain field moved by its standard deviation; `number` is its place among them.
+/// What uncertain fields were moved by, in words; none where none was.
+pub fn moved_inputs(uncertain: &[UncertainField], by: &[f64]) -> Option<String> {
+    let fields = uncertain.iter().zip(by).filter(|(_, by)| **by != 0.0);
+    let all: Vec<String> = fields.map(|(own, by)| format!("{} {by:+.1} sd", own.field)).collect();
+    let text = format!(
+        "what was found is beside uncertain inputs as the points have them: {}",
+        all.join(", ")
+    );
+    (!all.is_empty()).then_some(text)
+}
+
+/// The case with every uncertain field moved by so many of its standard deviations.
 ///
 /// # Errors
 /// [`RotorGapError::Uncertain`]: no such field, no number, no standard deviation or two.
-pub fn moved(own: &UncertainField, number: usize, case: &Case) -> Result<Case, RotorGapError> {
+pub fn with_inputs(
+    case: &Case,
+    uncertain: &[UncertainField],
+    by: &[f64],
+) -> Result<Case, RotorGapError> {
+    let mut own = case.clone();
+    for (number, (field, by)) in uncertain.iter().zip(by).enumerate() {
+        own = moved(field, (number, *by), &own)?;
+    }
+    Ok(own)
+}
+
+/// The case with an uncertain field moved by some of its standard deviations; `number` is its place among them.
+fn moved(
+    own: &UncertainField,
+    (number, by): (usize, f64),
+    case: &Case,
+) -> Result<Case, RotorGapError> {
     let refused =
         |reason: String| RotorGapError::Uncertain { number, field: own.field.clone(), reason };
     let is_good = |sd: &f64| sd.is_finite() && *sd > 0.0;
     let change = match (own.sd_percent.filter(is_good), own.sd.filter(is_good)) {
-        (Some(percent), None) => Change::Times(1.0 + percent / 100.0),
-        (None, Some(sd)) => Change::Plus(sd),
+        (Some(percent), None) => Change::Times(1.0 + by * percent / 100.0),
+        (None, Some(sd)) => Change::Plus(by * sd),
         _ => {
             let reason = "has no `sd_percent` or `sd` above 0, or both; give one of them";
             return Err(refused(reason.to_owned()));
@@ -114,7 +142,7 @@ mod tests {
             sd_percent,
             sd,
         };
-        let shift = |own: &UncertainField, case: &Case| moved(own, 0, case).unwrap();
+        let shift = |own: &UncertainField, case: &Case| moved(own, (0, 1.0), case).unwrap();
         let changed = shift(&of("rotor.gj", Some(5.0), None), &case);
         assert!((changed.rotor.gj / case.rotor.gj - 1.05).abs() < 1e-12);
         let changed = shift(&of("rotor.precone_deg", None, Some(0.1)), &case);
@@ -127,7 +155,7 @@ mod tests {
         for usual in usual_uncertain() {
             assert_ne!(shift(&usual, &case), case, "{}", usual.field);
         }
-        let text = |own: UncertainField| moved(&own, 3, &case).unwrap_err().to_string();
+        let text = |own: UncertainField| moved(&own, (3, 1.0), &case).unwrap_err().to_string();
         assert!(text(of("rotor.gjj", Some(5.0), None)).contains("uncertain[3]: `rotor.gjj`"));
         assert!(text(of("title", Some(5.0), None)).contains("no number"));
         assert!(text(of("rotor.gj", None, None)).contains("sd_percent"));

@@ -229,7 +229,8 @@ pub fn diagnose_section(
         model: &model,
         causes: &causes,
         alternatives,
-        uncertain: Vec::new(),
+        uncertain: 0,
+        with_inputs: &|_| Ok(model.clone()),
         channels,
         instruments: vec![Instrument { name: PRESSURES.to_owned(), gain: GAIN, zero: 0.0 }],
         conditions: vec!["mach".to_owned(), "reduced_frequency".to_owned()],
@@ -238,12 +239,12 @@ pub fn diagnose_section(
         only: question.only,
         begun: question.begun,
     };
-    let KindFinding { table, found, alternatives, extended } = asked.answer()?;
+    let KindFinding { table, found, alternatives, inputs, extended } = asked.answer()?;
     let mut case = question.case.clone();
     if let Some(flap) = case.flaps.first_mut() {
         let [lift, moment, hinge] = extended.effectiveness;
         flap.effectiveness = EffectivenessValues { lift, moment, hinge };
     }
     let extended = (case != *question.case).then_some(case);
-    Ok(CaseDiagnosis { table, found, alternatives, extended })
+    Ok(CaseDiagnosis { table, found, alternatives, inputs, extended })
 }
