@@ -11,7 +11,7 @@
 //! | `regress` | compares a sweep of the whole program with its golden values | [`regress`] |
 //! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
 //! | `everyday-errors` | the same on benches with the everyday errors of a laboratory | [`everyday_errors`] |
-//! | `hidden-effects --kind rotor` | the same on points of test of an independent rotor | [`rotor_sets`] |
+//! | `hidden-effects --kind rotor`, `blade`, `section` | the same on points of an independent rotor, blade or section | [`point_sets`] |
 //! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
@@ -35,10 +35,10 @@ pub mod files;
 pub mod hidden_effects;
 pub mod hover_refinement;
 pub mod layers;
+pub mod point_sets;
 pub mod refinement;
 pub mod regress;
 pub mod rooms;
-pub mod rotor_sets;
 pub mod tidy;
 pub mod validate;
 pub mod wake_control;

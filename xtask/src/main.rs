@@ -7,11 +7,12 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
+use rotor_truth::kind::SetKind as PointKind;
 use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, ci, dependencies, dynamic_stall, everyday_errors, files,
-    hidden_effects, hover_refinement, layers, refinement, regress, rooms, rotor_sets, tidy,
+    hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms, tidy,
     validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
@@ -71,8 +72,8 @@ enum Chore {
         /// Block of seeds that the suite begins with
         #[arg(long, default_value_t = 0)]
         first_block: u64,
-        /// Noise levels, dB
-        #[arg(long, value_delimiter = ',', default_values_t = [40.0, 30.0, 20.0])]
+        /// Noise levels, dB; left out: 40,30,20, of a blade 60,50, of a section 40,30
+        #[arg(long, value_delimiter = ',')]
         snr: Vec<f64>,
         /// Only some sets: null, pairs, outside, or the id of what is hidden
         #[arg(long, default_value = "")]
@@ -105,6 +106,21 @@ enum SetKind {
     Bench,
     /// Points of test of a rotor: `--seeds` sets of each effect at each noise.
     Rotor,
+    /// Frequencies of a blade, as many.
+    Blade,
+    /// Loads of an oscillating section, as many.
+    Section,
+}
+
+impl SetKind {
+    /// Noise levels of a suite that names none, dB.
+    fn usual_snr_db(self) -> Vec<f64> {
+        match self {
+            Self::Bench | Self::Rotor => vec![40.0, 30.0, 20.0],
+            Self::Blade => vec![60.0, 50.0],
+            Self::Section => vec![40.0, 30.0],
+        }
+    }
 }
 
 /// Families of a suite.
@@ -301,7 +317,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::from(report.exit_code()))
         }
         Chore::HiddenEffects { kind, seeds, first_block, snr, only, suite } => {
-            let selection = hidden_effects::Selection { seeds, first_block, snr_db: snr, only };
+            let snr_db = if snr.is_empty() { kind.usual_snr_db() } else { snr };
+            let selection = hidden_effects::Selection { seeds, first_block, snr_db, only };
             hidden(root, kind, &suite.options(selection))
         }
         Chore::EverydayErrors(options) => everyday(root, options),
@@ -345,15 +362,18 @@ fn hidden(
     options: &Options<hidden_effects::Selection>,
 ) -> Result<ExitCode, XtaskError> {
     let progress = |line: &str| say(&mut std::io::stderr(), line);
-    let (text, code) = match kind {
-        SetKind::Bench => {
-            let report = hidden_effects::run(root, options, progress)?;
-            (report.text(), report.exit_code())
-        }
-        SetKind::Rotor => {
-            let report = rotor_sets::run(root, options, progress)?;
-            (report.text(), report.exit_code())
-        }
+    let of_points = match kind {
+        SetKind::Bench => None,
+        SetKind::Rotor => Some(PointKind::Rotor),
+        SetKind::Blade => Some(PointKind::Blade),
+        SetKind::Section => Some(PointKind::Section),
+    };
+    let (text, code) = if let Some(kind) = of_points {
+        let report = point_sets::run(root, kind, options, progress)?;
+        (report.text(), report.exit_code())
+    } else {
+        let report = hidden_effects::run(root, options, progress)?;
+        (report.text(), report.exit_code())
     };
     say(&mut std::io::stdout(), &text);
     Ok(ExitCode::from(code))

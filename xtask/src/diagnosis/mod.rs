@@ -171,9 +171,13 @@ impl Hhc {
         self.found(&arguments, folder)
     }
 
-    /// Findings and wall time of one diagnosis of the case `folder/case.ron` from `folder/sweep.csv`.
-    pub(crate) fn diagnose_points(&self, folder: &Path) -> Result<(Findings, f64), XtaskError> {
-        let output = self.call(&["import", "sweep.csv", "-o", "measured"], folder)?;
+    /// Findings and wall time of one diagnosis of the case `folder/case.ron` from a table in `folder`.
+    pub(crate) fn diagnose_points(
+        &self,
+        folder: &Path,
+        table: &str,
+    ) -> Result<(Findings, f64), XtaskError> {
+        let output = self.call(&["import", table, "-o", "measured"], folder)?;
         if !output.status.success() {
             return Err(self.failed(&output));
         }

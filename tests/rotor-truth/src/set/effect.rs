@@ -4,64 +4,17 @@ use super::drive::Hysteresis;
 use super::layout::Drives;
 use super::machine::{MASS_KG_M, Machine, NOMINAL_RPM, OddBlade, RADIUS_M, Upwash};
 use super::path::SupportMode;
+use crate::draw::{Draw, Parameters, checked_size, told};
 use crate::error::RotorTruthError;
 use crate::physics::blade::Stall;
 use crate::physics::inflow::InflowKind;
-use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-use serde_json::{Map, Value, json};
-
-/// Parameters of an effect, by name.
-pub type Parameters = Map<String, Value>;
-
-/// Draws sizes unless one is given.
-struct Draw<'a> {
-    rng: &'a mut ChaCha8Rng,
-    size: Option<f64>,
-}
-
-impl Draw<'_> {
-    fn within(&mut self, low: f64, high: f64) -> f64 {
-        self.rng.random_range(low..high)
-    }
-
-    /// A size between two values.
-    fn size(&mut self, low: f64, high: f64) -> f64 {
-        let drawn = self.within(low, high);
-        self.size.unwrap_or(drawn)
-    }
-
-    fn is_up(&mut self) -> bool {
-        self.rng.random_range(0..2) == 0
-    }
-
-    /// A size of either sign.
-    fn signed(&mut self, low: f64, high: f64) -> f64 {
-        let sign = if self.is_up() { 1.0 } else { -1.0 };
-        let drawn = sign * self.within(low, high);
-        self.size.unwrap_or(drawn)
-    }
-
-    /// A ratio above or below 1.
-    fn ratio(&mut self, low: f64, high: f64) -> f64 {
-        let up = self.is_up();
-        let by = 1.0 + self.within(low, high);
-        self.size.unwrap_or(if up { by } else { 1.0 / by })
-    }
-
-    fn number(&mut self, count: usize) -> usize {
-        self.rng.random_range(0..count)
-    }
-}
+use serde_json::json;
 
 /// `m0 Omega^2 R^3` at nominal speed, N m.
 fn nominal_moment_newton_metre() -> f64 {
     let omega = NOMINAL_RPM * std::f64::consts::TAU / 60.0;
     MASS_KG_M * omega * omega * RADIUS_M.powi(3)
-}
-
-fn told<const N: usize>(values: [(&str, Value); N]) -> Parameters {
-    values.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// Puts an effect into a machine.
@@ -76,12 +29,8 @@ pub fn apply(
     drives: &Drives,
     rng: &mut ChaCha8Rng,
 ) -> Result<Parameters, RotorTruthError> {
-    if size.is_some_and(|own| !own.is_finite()) {
-        let (what, expected) = ("the size", "a finite number");
-        return Err(RotorTruthError::Value { what, value: f64::NAN, expected });
-    }
-    let mut draw = Draw { rng, size };
-    let draw = &mut draw;
+    checked_size(size)?;
+    let draw = &mut Draw::new(rng, size);
     let found = of_blades(name, machine, draw)
         .or_else(|| of_flaps(name, machine, drives, draw))
         .or_else(|| of_air(name, machine, draw))
@@ -116,7 +65,7 @@ fn of_blades(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Paramet
             // as soft as a part of the blade itself
             let unit = nominal_moment_newton_metre();
             let stiffness = draw.size(5.0, 30.0);
-            let stiffness = if draw.size.is_some() { stiffness } else { stiffness * b.gj * unit };
+            let stiffness = if draw.is_given() { stiffness } else { stiffness * b.gj * unit };
             b.pitch_spring = Some(stiffness / unit);
             told([("stiffness", json!(stiffness))])
         }
@@ -131,7 +80,7 @@ fn of_blades(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Paramet
             told([("offset_r", json!(offset))])
         }
         "aerodynamic-centre" => {
-            let offset = draw.signed(0.02, 0.08) * if draw.size.is_some() { 1.0 } else { b.chord };
+            let offset = draw.signed(0.02, 0.08) * if draw.is_given() { 1.0 } else { b.chord };
             b.aerodynamic_centre += offset;
             told([("offset_r", json!(offset))])
         }
@@ -253,7 +202,7 @@ fn of_readings(name: &str, m: &mut Machine, draw: &mut Draw<'_>) -> Option<Param
             let load = draw.number(6);
             let reversed = draw.number(4) == 0;
             let drawn = draw.ratio(0.08, 0.3);
-            let ratio = if reversed && draw.size.is_none() { -1.0 } else { drawn };
+            let ratio = if reversed && !draw.is_given() { -1.0 } else { drawn };
             m.path.gain = Some((load, 4, ratio));
             let instrument = ["fx_n4_N", "fy_n4_N", "fz_n4_N", "mx_n4_Nm", "my_n4_Nm", "mz_n4_Nm"];
             told([("ratio", json!(ratio)), ("instrument", json!(instrument[load]))])

@@ -1,15 +1,16 @@
 //! A set: effect and layout drawn by the seed, flown, put into text.
 
 use super::catalogue::{CATALOGUE, Entry, entry};
-use super::effect::{Parameters, apply};
+use super::effect::apply;
 use super::fly::fly;
 use super::layout::Layout;
 use super::machine::Machine;
 use super::{case, table};
+use crate::draw::{Parameters, stream};
 use crate::error::RotorTruthError;
 use crate::physics::balance::Resolution;
 use crate::physics::blade::{Airloads, Blade, Couplings, Lags};
-use rand::{RngExt, SeedableRng};
+use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
@@ -66,13 +67,6 @@ pub struct Made {
     pub case_ron: String,
     /// What is hidden.
     pub answer: Answer,
-}
-
-/// A generator of its own for each thing that is drawn: another size draws no other noise.
-fn stream(seed: u64, number: u64) -> ChaCha8Rng {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(number);
-    rng
 }
 
 fn drawn(rng: &mut ChaCha8Rng) -> Entry {

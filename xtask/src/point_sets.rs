@@ -1,18 +1,17 @@
-//! The suite of rotors: points of test of an independent rotor with a hidden effect, diagnosed by the program, scored against
-//! their answers.
+//! The suites of points: an independent rotor, blade or section with a hidden effect, diagnosed by the program, scored against
+//! the answer.
 //!
-//! The result of each set is kept below `target/rotor-sets`, in a folder named after the programs that made it: an interrupted
-//! suite goes on where it was, a changed program begins anew.
+//! The result of each set is kept below `target/rotor-sets`, `blade-sets` or `section-sets`, in a folder named after the programs
+//! that made it: an interrupted suite goes on where it was, a changed program begins anew.
 
 use std::path::Path;
 
 use rayon::prelude::*;
-use rotor_truth::physics::balance::Resolution;
-use rotor_truth::set::catalogue::{CATALOGUE, Entry};
-use rotor_truth::set::made::{Request, make};
+use rotor_truth::asked::Asked;
+use rotor_truth::kind::SetKind;
 use score::metrics::Metric;
+use score::points::{PointCase, metrics, wrong_ones};
 use score::report;
-use score::rotor::{RotorCase, metrics, wrong_ones};
 
 use crate::XtaskError;
 use crate::diagnosis::{
@@ -27,7 +26,9 @@ const EFFECT: u64 = 200;
 
 /// One set.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RotorSet {
+pub struct PointSet {
+    /// What is tested.
+    pub kind: SetKind,
     /// Its seed.
     pub seed: u64,
     /// What is hidden.
@@ -37,17 +38,17 @@ pub struct RotorSet {
 }
 
 /// The sets of a selection: of every effect, or of the one that is named, so many at each noise.
-pub fn sets(selection: &Selection) -> Vec<RotorSet> {
+pub fn sets(kind: SetKind, selection: &Selection) -> Vec<PointSet> {
     let Selection { seeds, first_block, snr_db, only } = selection;
-    let wanted = |own: &(usize, &Entry)| only.is_empty() || own.1.name == only;
-    let effects = CATALOGUE.iter().enumerate().filter(wanted);
-    let of_effect = |(number, own): (usize, &Entry)| {
+    let effects = kind.effects();
+    let effects = effects.iter().enumerate().filter(|own| only.is_empty() || own.1 == only);
+    let of_effect = |(number, effect): (usize, &&'static str)| {
         let first = first_block * BLOCK + number as u64 * EFFECT;
-        let effect = own.name;
+        let effect = *effect;
         let at = move |snr_db: &f64| {
             let snr_db = *snr_db;
             (0..*seeds)
-                .map(move |k| RotorSet { seed: first + k, effect, snr_db })
+                .map(move |k| PointSet { kind, seed: first + k, effect, snr_db })
                 .collect::<Vec<_>>()
         };
         snr_db.iter().flat_map(at).collect::<Vec<_>>()
@@ -57,18 +58,18 @@ pub fn sets(selection: &Selection) -> Vec<RotorSet> {
 
 /// What the suite found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RotorReport {
+pub struct PointReport {
     /// The scored sets, in order of their seeds.
-    pub cases: Vec<RotorCase>,
+    pub cases: Vec<PointCase>,
     /// The metrics.
     pub metrics: Vec<Metric>,
     /// Sets without findings.
     pub failures: Vec<Failure>,
 }
 
-impl RotorReport {
+impl PointReport {
     /// The report of scored sets.
-    pub fn of(mut cases: Vec<RotorCase>, failures: Vec<Failure>) -> Self {
+    pub fn of(mut cases: Vec<PointCase>, failures: Vec<Failure>) -> Self {
         cases.sort_by_key(|case| case.answer.seed);
         Self { metrics: metrics(&cases), cases, failures }
     }
@@ -98,47 +99,50 @@ impl RotorReport {
 /// [`XtaskError`] where files cannot be written, programs not be started, or results kept earlier not be read.
 pub fn run(
     root: &Path,
+    kind: SetKind,
     options: &Options<Selection>,
     progress: impl Fn(&str) + Sync,
-) -> Result<RotorReport, XtaskError> {
-    let (hhc, folder) = set_up(root, options, "rotor-sets")?;
-    let sets = sets(&options.selection);
+) -> Result<PointReport, XtaskError> {
+    let (hhc, folder) = set_up(root, options, &format!("{}-sets", kind.name()))?;
+    let sets = sets(kind, &options.selection);
     progress(&format!("{} sets, results in {}\n", sets.len(), folder.display()));
     let tell = counted(sets.len(), &progress);
-    let one = |set: &RotorSet| {
-        let RotorSet { seed, effect, snr_db } = set;
+    let one = |set: &PointSet| {
+        let PointSet { seed, effect, snr_db, .. } = set;
         let told = format!("{effect} seed {seed} at {snr_db} dB");
-        let file = format!("{effect}_seed{seed}_{snr_db}dB");
-        let telling = (RotorCase::line as fn(&RotorCase) -> String, &tell);
+        let file = format!("{}_{effect}_seed{seed}_{snr_db}dB", kind.name());
+        let telling = (PointCase::line as fn(&PointCase) -> String, &tell);
         kept_or_made(&folder, SetName { told, file }, telling, |place| diagnosed(&hhc, place, set))
     };
     let results = pool(options.threads)?
         .install(|| sets.par_iter().with_max_len(1).map(one).collect::<Result<Vec<_>, _>>())?;
-    let mut cases: Vec<RotorCase> = read_results(&folder)?;
+    let mut cases: Vec<PointCase> = read_results(&folder)?;
     let Selection { only, snr_db, .. } = &options.selection;
+    cases.retain(|own| own.kind == kind.name());
     cases.retain(|own| only.is_empty() || own.answer.effect == *only);
     cases.retain(|own| snr_db.iter().any(|snr| (snr - own.answer.snr_db).abs() < 1e-9));
-    Ok(RotorReport::of(cases, results.into_iter().flatten().collect()))
+    Ok(PointReport::of(cases, results.into_iter().flatten().collect()))
 }
 
-fn diagnosed(hhc: &Hhc, place: &Path, set: &RotorSet) -> Result<RotorCase, XtaskError> {
-    let made = make(&Request {
+fn diagnosed(hhc: &Hhc, place: &Path, set: &PointSet) -> Result<PointCase, XtaskError> {
+    let kind = set.kind;
+    let made = kind.make(&Asked {
         seed: set.seed,
         snr_db: set.snr_db,
         effect: Some(set.effect.to_owned()),
         size: None,
         points: None,
         base_error: true,
-        resolution: Resolution::default(),
     });
     let refused = |said: String| XtaskError::Refused { program: "rotor-truth".to_owned(), said };
     let made = made.map_err(|error| refused(error.to_string()))?;
-    let answer = serde_json::to_value(&made.answer).and_then(serde_json::from_value);
-    let answer = answer.map_err(|error| refused(error.to_string()))?;
-    let files = [("sweep.csv".to_owned(), made.sweep_csv), ("case.ron".to_owned(), made.case_ron)];
+    let answer = serde_json::from_value(made.answer).map_err(|error| refused(error.to_string()))?;
+    let files =
+        [(kind.table_name().to_owned(), made.table_csv), ("case.ron".to_owned(), made.case_ron)];
     write_folder(place, &files)?;
-    let (findings, seconds) = hhc.diagnose_points(place)?;
-    Ok(RotorCase { answer, findings, seconds, made_by: hhc.made_by().to_owned() })
+    let (findings, seconds) = hhc.diagnose_points(place, kind.table_name())?;
+    let (kind, made_by) = (kind.name().to_owned(), hhc.made_by().to_owned());
+    Ok(PointCase { kind, answer, findings, seconds, made_by })
 }
 
 #[cfg(test)]
@@ -147,22 +151,26 @@ mod tests {
 
     #[test]
     fn every_effect_has_seeds_of_its_own() {
-        let of = |only: &str, seeds| {
-            sets(&Selection {
-                seeds,
-                first_block: 3,
-                snr_db: vec![40.0, 30.0],
-                only: only.to_owned(),
-            })
-        };
-        let all = of("", 2);
-        assert_eq!(all.len(), 4 * CATALOGUE.len());
-        let mut seeds: Vec<u64> = all.iter().map(|own| own.seed).collect();
-        seeds.sort_unstable();
-        seeds.dedup();
-        assert_eq!(seeds.len(), 2 * CATALOGUE.len());
-        assert!(seeds.iter().all(|seed| (30_000..40_000).contains(seed)));
-        assert!(of("mass", 3).iter().all(|own| own.effect == "mass"));
-        assert!(of("masses", 3).is_empty());
+        for kind in [SetKind::Rotor, SetKind::Blade, SetKind::Section] {
+            let of = |only: &str, seeds| {
+                let selection = Selection {
+                    seeds,
+                    first_block: 3,
+                    snr_db: vec![40.0, 30.0],
+                    only: only.to_owned(),
+                };
+                sets(kind, &selection)
+            };
+            let all = of("", 2);
+            let effects = kind.effects().len();
+            assert_eq!(all.len(), 4 * effects);
+            let mut seeds: Vec<u64> = all.iter().map(|own| own.seed).collect();
+            seeds.sort_unstable();
+            seeds.dedup();
+            assert_eq!(seeds.len(), 2 * effects);
+            assert!(seeds.iter().all(|seed| (30_000..40_000).contains(seed)));
+            assert!(of("null", 3).iter().all(|own| own.effect == "null"));
+            assert!(of("masses", 3).is_empty());
+        }
     }
 }
