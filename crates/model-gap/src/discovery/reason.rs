@@ -119,6 +119,14 @@ pub enum Reason {
         /// Explained share, at most 1.
         share: f64,
     },
+    /// A cause that looks alike was not tried.
+    #[error("{other} looks like {cause} and was not tried: no model with it could be read")]
+    NotTried {
+        /// The cause found.
+        cause: &'static str,
+        /// The other.
+        other: &'static str,
+    },
     /// What a cause explains is small beside what nothing explains.
     #[error(
         "{cause} takes {:.0} % as much off the error of the readings as is left of it: the name is tentative",

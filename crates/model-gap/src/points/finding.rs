@@ -3,7 +3,7 @@
 use super::floor::Floor;
 use super::next::{NextPoints, next_points};
 use super::predicted::Tables;
-use super::table::{PointTable, SuspectParameter};
+use super::table::{PointTable, Suspect, SuspectParameter};
 use crate::discovery::{
     Confidence, Discovery, Finding, FittedParameter, Found, Reason, Settings, Simulator, Yardstick,
 };
@@ -112,12 +112,15 @@ impl PointTable {
             Some(given) => discovery.refit(given)?,
             None => discovery.find()?,
         };
-        if finding.confidence == Confidence::Confident
-            && let Some(reason) =
-                self.small_beside_rest((&floor, &tables), &candidates, &finding)?
-        {
-            finding.confidence = Confidence::Tentative;
-            finding.reasons.push(reason);
+        if finding.confidence == Confidence::Confident {
+            let doubt = match self.not_tried(&finding) {
+                None => self.small_beside_rest((&floor, &tables), &candidates, &finding)?,
+                doubt => doubt,
+            };
+            if let Some(reason) = doubt {
+                finding.confidence = Confidence::Tentative;
+                finding.reasons.push(reason);
+            }
         }
         let next = next_points(self, &floor, &candidates, &finding)?;
         let gains = self.gains(&tables, &finding);
@@ -130,6 +133,20 @@ impl PointTable {
             }
         }
         Ok(PointFinding { finding, candidates, measured, gains, next })
+    }
+
+    /// A cause that looks like one that was found and was not tried, for no model with it could be read.
+    fn not_tried(&self, finding: &Finding) -> Option<Reason> {
+        let found = finding.causes.iter().map(|own| &self.suspects[own.candidate]);
+        let pairs = found.flat_map(|own| {
+            let is_alike = |other: &&Suspect| {
+                other.is_unread
+                    && (own.confused_with.contains(&other.name)
+                        || other.confused_with.contains(&own.name))
+            };
+            self.suspects.iter().filter(is_alike).map(move |other| (own.name, other.name))
+        });
+        pairs.map(|(cause, other)| Reason::NotTried { cause, other }).next()
     }
 
     /// What takes less off the error of the readings than [`BESIDE_REST`] of what is left of it, on points that the fits have

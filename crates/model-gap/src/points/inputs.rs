@@ -89,7 +89,11 @@ impl<K: PointKind> KindQuestion<'_, K> {
         let here = vec![0.0; self.uncertain];
         let (named, _) = search.explained(&search.tables.predict(effects)?, &here)?;
         let (base, step) = search.explained(&search.tables.predict(&[])?, &here)?;
-        let needed = needed_to_separate(base - named);
+        // what the simulation reads has no error of form
+        let needed = needed_to_separate(0.0);
+        // where nothing was named it must better the simulation as it is
+        let named = if effects.is_empty() { base - needed } else { named };
+        let enough = AS_LIKELY.mul_add(needed, named);
         // inputs that cannot be simulated explain nothing
         let mut starts = vec![step];
         for (k, first) in (0..self.uncertain).flat_map(|k| [(k, FIRST), (k, -FIRST)]) {
@@ -113,7 +117,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             let (cost, step) = search.explained(&predicted, &best.by)?;
             best.cost = cost;
             let far = step.iter().zip(&best.by).fold(0.0_f64, |far, (a, b)| far.max((a - b).abs()));
-            if cost < named + AS_LIKELY * needed || far < SETTLED {
+            if cost < enough || far < SETTLED {
                 break;
             }
             let part = |part: f64| -> Vec<f64> {
@@ -136,7 +140,9 @@ impl<K: PointKind> KindQuestion<'_, K> {
         search: &Search<'_>,
         mut by: Vec<f64>,
     ) -> Result<MovedInputs<K::Model>, K::Error> {
-        by.iter_mut().for_each(|own| *own = own.clamp(-FURTHEST, FURTHEST));
+        for own in &mut by {
+            *own = own.clamp(-FURTHEST, FURTHEST);
+        }
         let model = (self.with_inputs)(&by)?;
         let predicted = self.kind.read(&model)?;
         let signal = search.tables.signal(|p, c| predicted[p][c]);

@@ -28,6 +28,10 @@ pub trait PointKind: Sync {
     fn read(&self, model: &Self::Model) -> Result<Grid, Self::Error>;
 }
 
+/// A model whose inputs are moved by so many of their standard deviations.
+pub type WithInputs<'a, K> =
+    dyn Fn(&[f64]) -> Result<<K as PointKind>::Model, <K as PointKind>::Error> + 'a;
+
 /// What is asked of a simulation and what was measured.
 pub struct KindQuestion<'a, K: PointKind> {
     /// Its kind.
@@ -41,7 +45,7 @@ pub struct KindQuestion<'a, K: PointKind> {
     /// How many inputs are not known well.
     pub uncertain: usize,
     /// The model with each of them moved by so many of its standard deviations.
-    pub with_inputs: &'a dyn Fn(&[f64]) -> Result<K::Model, K::Error>,
+    pub with_inputs: &'a WithInputs<'a, K>,
     /// The channels.
     pub channels: Vec<Channel>,
     /// What they are calibrated by.
@@ -163,25 +167,26 @@ impl<K: PointKind> KindQuestion<'_, K> {
         Ok((table, names))
     }
 
-    /// A cause as a suspect: what is read with some of it. One that cannot be read is blocked.
+    /// A cause as a suspect: what is read with some of it. Amounts that cannot be read are left out; it is blocked where a
+    /// parameter has no other.
     fn suspect(&self, cause: &PointCause<K::Model>) -> Suspect {
         let mut blocked = cause.blocked.clone();
+        let mut is_unread = false;
         let none = cause.none();
         let mut parameter = |k: usize| {
             let own = &cause.parameters[k];
-            let mut tables = Vec::new();
-            for &amount in &own.amounts {
-                if blocked.is_some() {
-                    break;
-                }
+            let (mut tables, mut failure) = (Vec::new(), None);
+            for &amount in own.amounts.iter().filter(|_| blocked.is_none()) {
                 let mut values = none.clone();
                 values[k] = amount;
                 match self.kind.read(&cause.applied(self.model, &values)) {
                     Ok(grid) => tables.push((amount, grid)),
-                    Err(error) => {
-                        blocked = Some(format!("the model with it cannot be read: {error}"));
-                    }
+                    Err(error) => failure = Some(error),
                 }
+            }
+            if let (true, Some(error)) = (tables.is_empty(), failure) {
+                blocked = Some(format!("the model with it cannot be read: {error}"));
+                is_unread = true;
             }
             SuspectParameter {
                 name: own.name,
@@ -201,6 +206,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             separating: cause.separating,
             parameters,
             blocked,
+            is_unread,
             ..Suspect::default()
         }
     }

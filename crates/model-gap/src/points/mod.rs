@@ -22,7 +22,7 @@ mod told;
 
 pub use cause::{CauseParameter, PointCause};
 pub use finding::{ChannelGain, PointFinding};
-pub use kind::{KindFinding, KindQuestion, PointKind};
+pub use kind::{KindFinding, KindQuestion, PointKind, WithInputs};
 pub use names::{channels_of, lasting};
 pub use next::NextPoints;
 pub use table::{

@@ -106,6 +106,8 @@ pub struct Suspect {
     pub separating: &'static [&'static str],
     /// Why the data cannot show it, found before any fit; none if they may.
     pub blocked: Option<String>,
+    /// Whether the model with it could not be read, so that it was not tried.
+    pub is_unread: bool,
     /// Its parameters, whose effects add up.
     pub parameters: Vec<SuspectParameter>,
 }
@@ -120,6 +122,7 @@ impl Default for Suspect {
             confused_with: &[],
             separating: &[],
             blocked: None,
+            is_unread: false,
             parameters: Vec::new(),
         }
     }

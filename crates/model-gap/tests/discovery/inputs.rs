@@ -112,7 +112,7 @@ fn what_no_uncertain_input_does_is_named() {
     let soft = asked(Oscillator { spring: 0.85 * OWN.spring, ..OWN });
     assert_eq!(names(&soft), ["spring"]);
     assert_eq!(soft.inputs, [0.0; 2]);
-    let found = soft.found.finding.causes[0].parameters[0].clone();
+    let found = soft.found.finding.causes[0].parameters[0];
     assert!((found.value - 0.85).abs() < 0.02, "{found:?}");
     let damped = asked(Oscillator { damper: 1.8 * OWN.damper, ..OWN });
     assert_eq!(names(&damped), ["damper"]);

@@ -25,8 +25,8 @@ pub const BLADE_LIBRARY: [&str; 8] = [
 const TIP: f64 = 0.02;
 const AT_REST: &[&str] = &["frequencies at rest", "frequencies at other rotor speeds"];
 
-/// The causes of a blade.
-pub(super) fn library(model: &BladeModel) -> Vec<BladeCause> {
+/// The causes of a blade whose modes of these names were read.
+pub(super) fn library(model: &BladeModel, modes: &[String]) -> Vec<BladeCause> {
     let stiffnesses = [
         properties::stiffness_flap(),
         properties::stiffness_lag(),
@@ -34,7 +34,8 @@ pub(super) fn library(model: &BladeModel) -> Vec<BladeCause> {
     ];
     let mut all: Vec<BladeCause> =
         stiffnesses.map(|own| own.beside(&["mass", "root-compliance"], AT_REST)).to_vec();
-    all.extend([root_offset(), rotor_speed(), tip_mass(model), root_compliance(model)]);
+    all.extend([root_offset(model), rotor_speed(), tip_mass(model)]);
+    all.extend(root_compliance(model, modes));
     all.push(properties::mass().beside(&["stiffness-flap"], &["the weight of the blade"]));
     all
 }
@@ -96,11 +97,18 @@ fn further_out(case: &mut Case, offset_r: f64) {
     }
 }
 
-fn root_offset() -> BladeCause {
+fn root_offset(model: &BladeModel) -> BladeCause {
     let physics =
         "the root of the blade lies further out or in: a blade of the same length, shifted";
-    let parameters = vec![CauseParameter::both_ways("offset_r", "R", &[0.005, -0.005, 0.03], 0.15)];
-    PointCause::new("root-offset", physics, parameters, |m: &mut BladeModel, v| {
+    // no root lies beyond the axis
+    let inmost = -model.case.rotor.root_offset_r.clamp(0.0, 0.15);
+    let mut amounts = vec![0.005, 0.03];
+    if inmost < -0.01 {
+        amounts.push(-0.005);
+    }
+    let (name, unit, shown) = ("offset_r", "R", Shown::Itself);
+    let parameter = CauseParameter { name, unit, none: 0.0, range: (inmost, 0.15), amounts, shown };
+    PointCause::new("root-offset", physics, vec![parameter], |m: &mut BladeModel, v| {
         if v[0] != 0.0 {
             further_out(&mut m.case, v[0]);
         }
@@ -152,16 +160,29 @@ fn tip_mass(model: &BladeModel) -> BladeCause {
     .beside(&["stiffness-flap", "mass"], &["the weight of the blade and its centre"])
 }
 
-fn root_compliance(model: &BladeModel) -> BladeCause {
-    let physics = "the root gives way in flap bending: a spring in place of a clamp";
+/// A root that gives way in flap, lag or twist.
+fn root_compliance(model: &BladeModel, modes: &[String]) -> [BladeCause; 3] {
+    let has = |kind: &str| modes.iter().any(|own| own.starts_with(kind));
     let case = &model.case;
-    // what a fiftieth of the blade gives in bending
-    let give = 0.02 / (case.rotor.ei_flap * case.scales().moment_newton_metre());
-    let named = ("root-compliance", physics);
-    properties::root_spring(named, model, |r| &mut r.root.flap, (give, &[1.0, 4.0])).beside(
-        &["stiffness-flap"],
-        &["a static load at the root", "frequencies of the third mode and above"],
-    )
+    let unit = case.scales().moment_newton_metre();
+    let told: &[&str] = &["a static load at the root", "frequencies of the third mode and above"];
+    let named = |physics| ("root-compliance", physics);
+    // what a fiftieth of the blade gives
+    let give = |stiffness: f64| (0.02 / (stiffness * unit), &[1.0, 4.0][..]);
+    let r = &case.rotor;
+    let flap = named("the root gives way in flap bending: a spring in place of a clamp");
+    let lag = named("the root gives way in lag bending: a spring in place of a clamp");
+    let twist = named("the root gives way in pitch: a spring in place of a stiff pitch link");
+    [
+        properties::root_spring(flap, model, |r| &mut r.root.flap, give(r.ei_flap))
+            .beside(&["stiffness-flap"], told),
+        properties::root_spring(lag, model, |r| &mut r.root.lag, give(r.ei_lag))
+            .beside(&["stiffness-lag"], told)
+            .blocked_if(!has("lag"), "no lag mode was read"),
+        properties::root_spring(twist, model, |r| &mut r.root.feather, give(r.gj))
+            .beside(&["stiffness-torsion"], told)
+            .blocked_if(!has("torsion"), "no torsion mode was read"),
+    ]
 }
 
 #[cfg(test)]
@@ -182,12 +203,26 @@ mod tests {
             found.iter().flat_map(|own| own.modes.iter().map(|mode| mode.hz)).collect()
         };
         let own = hz(&model.case);
-        let out = root_offset().applied(&model, &[0.06]);
+        let out = root_offset(&model).applied(&model, &[0.06]);
         let out = hz(&out.case);
         let half = own.len() / 2;
         for (a, b) in own[..half].iter().zip(&out[..half]) {
             assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
         }
         assert!(out[half] > 1.01 * own[half], "{} {}", out[half], own[half]);
+    }
+
+    /// A blade whose root is on the axis may have it further out, not further in.
+    #[test]
+    fn no_root_lies_beyond_the_axis() {
+        let mut model =
+            BladeModel { case: Case::default(), speed: 1.0, about: AboutState::Undeformed };
+        for (offset_r, inmost, count) in [(0.0, 0.0, 2), (0.06, -0.06, 3)] {
+            model.case.rotor.root_offset_r = offset_r;
+            let parameter = root_offset(&model).parameters[0].clone();
+            assert!((parameter.range.0 - inmost).abs() < 1e-12);
+            assert_eq!(parameter.amounts.len(), count);
+            assert!(parameter.amounts.iter().all(|amount| *amount > inmost));
+        }
     }
 }

@@ -105,7 +105,7 @@ pub fn diagnose_blade(
     }
     let with_case = |case| BladeModel { case, ..model.clone() };
     let with_inputs = |by: &[f64]| with_inputs(&model.case, question.uncertain, by).map(with_case);
-    let causes = causes::library(&model);
+    let causes = causes::library(&model, &measured.modes);
     let asked = KindQuestion {
         kind: &kind,
         model: &model,

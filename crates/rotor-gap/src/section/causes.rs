@@ -1,7 +1,7 @@
 //! What the simulation of a section may lack.
 
 use super::SectionModel;
-use flap_aero::StallAirfoil;
+use flap_aero::{AttachedFlowModel, StallAirfoil};
 use model_gap::points::{CauseParameter, PointCause, Shown};
 
 /// A cause, ready for one section.
@@ -83,6 +83,10 @@ fn compressibility(o: &Occasion<'_>) -> SectionCause {
     )
     .beside(&["sensor-gain"], &["points at other Mach numbers"])
     .blocked_if(o.model.mach_share > 0.0, "the sections of the case are compressible already")
+    .blocked_if(
+        o.model.attached == AttachedFlowModel::Incompressible,
+        "`model: Incompressible` has no Mach number; `Calibrated` with `compressibility: None` is the same flow and has",
+    )
 }
 
 fn unsteady_lag(o: &Occasion<'_>) -> SectionCause {

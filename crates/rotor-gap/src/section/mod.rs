@@ -29,6 +29,9 @@ const POINTS: usize = 72;
 const RESOLVED: usize = 12;
 /// Calibration of pressures from one session to the next, standard deviation of the gain.
 const GAIN: f64 = 0.01;
+/// What reads the pitch, and the standard deviation of its gain. A flap that is read wrongly is a weak one.
+const PITCH_MOTION: &str = "pitch motion";
+const PITCH_GAIN: f64 = 0.01;
 /// What reads the loads: they are integrals of the same pressures, so that one gain is that of all.
 const PRESSURES: &str = "pressures";
 
@@ -165,7 +168,6 @@ fn cycle(
 /// The motions that were measured, of any section.
 struct Motions<'a> {
     measured: &'a SectionLoads,
-    instruments: Vec<String>,
 }
 
 impl PointKind for Motions<'_> {
@@ -173,9 +175,12 @@ impl PointKind for Motions<'_> {
     type Error = RotorGapError;
 
     fn read(&self, model: &SectionModel) -> Result<Grid, RotorGapError> {
-        let gain = self.instruments.iter().map(|own| model.gains.get(own).copied().unwrap_or(1.0));
-        let gain: f64 = gain.product();
+        let gain_of = |name: &str| model.gains.get(name).copied().unwrap_or(1.0);
         let of = |motion: &SectionMotion| {
+            // loads are over the motion as read, but for their mean
+            let moves_flap = motion.motion == Motion::Flap;
+            let moved = if moves_flap { 1.0 } else { gain_of(PITCH_MOTION) };
+            let gain = gain_of(PRESSURES);
             let failed = |source| RotorGapError::Section { point: motion.id.clone(), source };
             let loads = model.loads(motion).map_err(failed)?;
             let late_rad = motion.frequency_hz.map_or(0.0, |hz| TAU * hz * model.delay_s);
@@ -187,7 +192,7 @@ impl PointKind for Motions<'_> {
                     (n, false) => series.harmonic(n).sine,
                     (n, true) => series.harmonic(n).cosine,
                 };
-                gain * value
+                if own.harmonic == 0 { gain * value } else { gain * value / moved }
             };
             Ok(self.measured.parts.iter().map(part).collect())
         };
@@ -205,8 +210,11 @@ pub fn diagnose_section(
 ) -> Result<CaseDiagnosis, RotorGapError> {
     let has_hinge = measured.parts.iter().any(|own| own.load == 2);
     let model = SectionModel::of(question.case, has_hinge);
-    let instruments = vec![PRESSURES.to_owned()];
-    let kind = Motions { measured, instruments: instruments.clone() };
+    let mut instruments = vec![PRESSURES.to_owned()];
+    if measured.motions.iter().any(|own| own.motion != Motion::Flap) {
+        instruments.push(PITCH_MOTION.to_owned());
+    }
+    let kind = Motions { measured };
     let names: Vec<&str> = measured.names.iter().map(String::as_str).collect();
     let (mut channels, _) = channels_of(&names);
     for own in &mut channels {
@@ -229,8 +237,14 @@ pub fn diagnose_section(
         model: &model,
         causes: &causes,
         alternatives,
-        uncertain: 0,
-        with_inputs: &|_| Ok(model.clone()),
+        uncertain: instruments.len() - 1,
+        with_inputs: &|by: &[f64]| {
+            let mut own = model.clone();
+            for (name, by) in instruments[1..].iter().zip(by) {
+                own.gains.insert(name.clone(), 1.0 + PITCH_GAIN * by);
+            }
+            Ok(own)
+        },
         channels,
         instruments: vec![Instrument { name: PRESSURES.to_owned(), gain: GAIN, zero: 0.0 }],
         conditions: vec!["mach".to_owned(), "reduced_frequency".to_owned()],

@@ -6,7 +6,7 @@ use crate::draw::{Draw, Parameters, told};
 use serde_json::json;
 
 /// Every effect.
-pub const CATALOGUE: [Effect; 16] = [
+pub const CATALOGUE: [Effect; 15] = [
     known(NULL),
     known("stiffness-flap"),
     known("stiffness-lag"),
@@ -16,12 +16,11 @@ pub const CATALOGUE: [Effect; 16] = [
     known("tip-mass"),
     known("root-compliance"),
     known("mass"),
-    outside("root-spring-lag"),
-    outside("pitch-link"),
     outside("mid-span-mass"),
     outside("graded-stiffness"),
     outside("guy"),
-    outside("frequency-counter"),
+    outside("graded-mass"),
+    outside("frequency-offset"),
     outside("modes-interchanged"),
 ];
 
@@ -32,8 +31,8 @@ pub struct Truth {
     pub beam: Beam,
     /// True rotor speed over the stated one.
     pub speed: f64,
-    /// Frequency read over the true one.
-    pub counter: f64,
+    /// Frequency read less the true one, Hz.
+    pub counter_off_hz: f64,
     /// Whether two neighbouring modes have each other's name.
     pub is_interchanged: bool,
 }
@@ -104,8 +103,11 @@ fn of_library(
             told([("mass_kg", json!(mass_kg)), ("gyration_share", json!(gyration))])
         }
         "root-compliance" => {
-            let stiffness = spring(draw, &beam.ei_flap, beam.length_m);
-            beam.root_spring[0] = Some(stiffness);
+            // in flap, in lag, in pitch
+            let plane = if draw.is_up() { 0 } else { 1 + usize::from(draw.is_up()) };
+            let along = [&beam.ei_flap, &beam.ei_lag, &beam.gj][plane].clone();
+            let stiffness = spring(draw, &along, beam.length_m);
+            beam.root_spring[plane] = Some(stiffness);
             told([("stiffness", json!(stiffness))])
         }
         "mass" => {
@@ -121,16 +123,6 @@ fn of_library(
 fn beyond(name: &str, truth: &mut Truth, draw: &mut Draw<'_>) -> Option<Parameters> {
     let beam = &mut truth.beam;
     Some(match name {
-        "root-spring-lag" => {
-            let stiffness = spring(draw, &beam.ei_lag, beam.length_m);
-            beam.root_spring[1] = Some(stiffness);
-            told([("stiffness", json!(stiffness))])
-        }
-        "pitch-link" => {
-            let stiffness = spring(draw, &beam.gj, beam.length_m);
-            beam.root_spring[2] = Some(stiffness);
-            told([("stiffness", json!(stiffness))])
-        }
         "mid-span-mass" => {
             let share = draw.log_size(0.01, 0.08);
             let station = draw.within(0.35, 0.65);
@@ -152,9 +144,14 @@ fn beyond(name: &str, truth: &mut Truth, draw: &mut Draw<'_>) -> Option<Paramete
             beam.guys.push((0.5, stiffness));
             told([("stiffness_n_m", json!(stiffness))])
         }
-        "frequency-counter" => {
-            truth.counter = draw.log_ratio(0.008, 0.05);
-            told([("ratio", json!(truth.counter))])
+        "graded-mass" => {
+            let grade = draw.signed(0.1, 0.35);
+            times(&mut beam.mass_kg_m, |s| 1.0 + grade * (1.0 - 2.0 * s));
+            told([("grade", json!(grade))])
+        }
+        "frequency-offset" => {
+            truth.counter_off_hz = draw.signed(0.1, 0.8);
+            told([("offset_hz", json!(truth.counter_off_hz))])
         }
         "modes-interchanged" => {
             truth.is_interchanged = true;

@@ -53,7 +53,7 @@ impl Plan {
                 let count = self.modes.iter().filter(|own| own.0 == family).count();
                 all.insert(family, truth.beam.frequencies_hz(family, omega_rad_s, count)?);
             }
-            let of = |(family, n): &(Family, usize)| truth.counter * all[family][n - 1];
+            let of = |(family, n): &(Family, usize)| all[family][n - 1] + truth.counter_off_hz;
             Ok(self.modes.iter().map(of).collect())
         };
         self.speeds_rpm.par_iter().map(at).collect()
@@ -110,7 +110,8 @@ pub fn make(asked: &Asked) -> Result<Made, RotorTruthError> {
     } else {
         BTreeMap::new()
     };
-    let mut truth = Truth { beam: own.beam(), speed: 1.0, counter: 1.0, is_interchanged: false };
+    let mut truth =
+        Truth { beam: own.beam(), speed: 1.0, counter_off_hz: 0.0, is_interchanged: false };
     let reference =
         Reference { radius_m: believed.radius_m, has_offset: believed.root_offset > 0.0 };
     let mut draw = Draw::new(&mut of_effect, asked.size);

@@ -9,7 +9,7 @@ use crate::draw::{Draw, Parameters, told};
 use serde_json::json;
 
 /// Every effect.
-pub const CATALOGUE: [Effect; 13] = [
+pub const CATALOGUE: [Effect; 12] = [
     known(NULL),
     known("flap-effectiveness"),
     known("compressibility"),
@@ -20,7 +20,6 @@ pub const CATALOGUE: [Effect; 13] = [
     outside("pitch-axis"),
     outside("returning-wake"),
     outside("flap-chord"),
-    outside("amplitude-misread"),
     outside("flexing-pivot"),
     outside("channel-leak"),
 ];
@@ -61,7 +60,9 @@ fn of_library(
         }
         "sensor-gain" => {
             let ratio = draw.log_ratio(0.05, 0.3);
-            own.gain *= ratio;
+            // what reads the loads, or what reads the pitch
+            let reading = if draw.is_up() { &mut own.gain } else { &mut own.pitch_read };
+            *reading *= ratio;
             told([("ratio", json!(ratio))])
         }
         "dynamic-stall" => {
@@ -95,10 +96,6 @@ fn beyond(name: &str, own: &mut Specimen, draw: &mut Draw<'_>) -> Option<Paramet
             let ratio = draw.log_ratio(0.06, 0.3);
             own.geometry.flap_chord *= ratio;
             told([("ratio", json!(ratio))])
-        }
-        "amplitude-misread" => {
-            own.pitch_read = draw.log_ratio(0.03, 0.2);
-            told([("ratio", json!(own.pitch_read))])
         }
         "flexing-pivot" => {
             own.give = draw.log_size(0.06, 0.6);

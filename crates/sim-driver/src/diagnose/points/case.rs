@@ -23,8 +23,7 @@ use std::sync::Arc;
 /// Name of the case that a diagnosis extended.
 const EXTENDED_CASE_FILE: &str = "extended_case.ron";
 /// What is taken for granted of the loads of a section.
-const SAME_PRESSURES: &str =
-    "cn, cm and ch are taken for integrals of the same pressures: one gain is that of all";
+const SAME_PRESSURES: &str = "cn, cm and ch are taken for integrals of the same pressures: one gain is that of all; pitch is read to 1 %";
 
 /// A case with what was found of it.
 pub struct CasePoints {
