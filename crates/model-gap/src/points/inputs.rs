@@ -105,7 +105,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
         let least =
             |a: &MovedInputs<K::Model>, b: &MovedInputs<K::Model>| a.cost.total_cmp(&b.cost);
         let Some(mut best) = starts.flatten().min_by(least) else { return Ok(None) };
-        for _ in 0..ROUNDS {
+        for round in 1..=ROUNDS {
             let further = self.further(&best.by)?;
             let further = further.iter().map(|own| self.kind.read(own)).collect::<Result<_, _>>();
             let Ok(further) = further else { return Ok(None) };
@@ -117,7 +117,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             let (cost, step) = search.explained(&predicted, &best.by)?;
             best.cost = cost;
             let far = step.iter().zip(&best.by).fold(0.0_f64, |far, (a, b)| far.max((a - b).abs()));
-            if cost < enough || far < SETTLED {
+            if cost < enough || far < SETTLED || round == ROUNDS {
                 break;
             }
             let part = |part: f64| -> Vec<f64> {
@@ -131,7 +131,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             }
         }
         best.higher = [best.cost - named, needed];
-        Ok(Some(best).filter(|own| own.higher[0] < SURELY * needed && !own.further.is_empty()))
+        Ok(Some(best).filter(|own| own.higher[0] < SURELY * needed))
     }
 
     /// The simulation with its inputs moved within their limits.
