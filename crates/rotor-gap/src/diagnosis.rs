@@ -24,8 +24,8 @@ pub struct CaseDiagnosis {
     pub found: PointFinding,
     /// Names of the other levels of fidelity.
     pub alternatives: Vec<&'static str>,
-    /// Standard deviations by which uncertain inputs were moved to explain the points; 0 where they were not.
-    pub inputs: Vec<f64>,
+    /// What uncertain inputs were moved by to explain the points, in words; none where they were not.
+    pub moved: Option<String>,
     /// The case with what was found, if any of it is in a case.
     pub extended: Option<Case>,
 }

@@ -25,8 +25,7 @@ pub use error::RotorGapError;
 pub use rotor::{
     Aside, Column, FlapDriveModel, LIBRARY, Load, LoadPath, PartOf, Reading, RotorCause,
     RotorDiagnosis, RotorModel, RotorQuestion, Setting, Sweep, SweepChannel, SweepPoint,
-    USUAL_UNCERTAIN, WonBack, alternatives, diagnose, moved_inputs, predict, stated,
-    usual_uncertain,
+    USUAL_UNCERTAIN, WonBack, alternatives, diagnose, predict, stated, usual_uncertain,
 };
 pub use table::{TableData, read_table};
 

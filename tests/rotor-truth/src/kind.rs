@@ -73,15 +73,7 @@ impl SetKind {
     pub fn make(self, asked: &Asked) -> Result<SetText, RotorTruthError> {
         match self {
             Self::Rotor => {
-                let made = set::made::make(&set::made::Request {
-                    seed: asked.seed,
-                    snr_db: asked.snr_db,
-                    effect: asked.effect.clone(),
-                    size: asked.size,
-                    points: asked.points,
-                    base_error: asked.base_error,
-                    resolution: Resolution::default(),
-                })?;
+                let made = set::made::make(asked, Resolution::default())?;
                 let (points, answer) = (made.answer.points, serde_json::to_value(&made.answer)?);
                 Ok(SetText { table_csv: made.sweep_csv, case_ron: made.case_ron, answer, points })
             }

@@ -9,7 +9,7 @@ use crate::discovery::{
 };
 use crate::{Candidate, GapError};
 
-/// Part of what is left of the error of the readings that every cause must take off it to be named with confidence.
+/// Part of what is left of the error of the readings that a cause after the first must take off it to be named with confidence.
 const BESIDE_REST: f64 = 0.5;
 
 /// What was found at points of test.
@@ -149,17 +149,16 @@ impl PointTable {
         pairs.map(|(cause, other)| Reason::NotTried { cause, other }).next()
     }
 
-    /// What takes less off the error of the readings than [`BESIDE_REST`] of what is left of it, on points that the fits have
-    /// not seen: all causes together, or one after the first. The floor says how large an error of the simulation is, not what it
-    /// looks like.
+    /// A cause after the first that takes less off the error of the readings than [`BESIDE_REST`] of what is left of it, on
+    /// points that the fits have not seen. The floor says how large an error of the simulation is, not what it looks like.
     fn small_beside_rest(
         &self,
         (floor, tables): (&Floor, &Tables<'_>),
         candidates: &[Candidate],
         finding: &Finding,
     ) -> Result<Option<Reason>, GapError> {
-        let Some([before, left]) = &finding.held_out_residuals else { return Ok(None) };
-        let (before, left) = (before.concat(), left.concat());
+        let Some([_, left]) = &finding.held_out_residuals else { return Ok(None) };
+        let left = left.concat();
         let over = tables.signal(|p, c| tables.sigma[p][c].powi(2) / self.points[p].deviation[c]);
         let over = over.concat();
         // mean square over the deviations of the readings, times their number
@@ -168,22 +167,21 @@ impl PointTable {
         };
         let kept = square(&left);
         let rest = kept - left.len() as f64;
-        let mut taken = vec![square(&before) - kept];
         let all = tables.predict(&finding.effects)?.concat();
-        for k in 1..finding.effects.len() {
+        for (k, effect) in finding.effects.iter().enumerate().skip(1) {
             let mut others = finding.effects.clone();
             others.remove(k);
             let without = tables.predict(&others)?.concat();
             let own: Vec<f64> = all.iter().zip(&without).map(|(a, b)| a - b).collect();
             let beyond = floor.beyond(tables, &own)?;
             let with: Vec<f64> = left.iter().zip(&beyond).map(|(a, b)| a + b).collect();
-            taken.push(square(&with) - kept);
+            let taken = square(&with) - kept;
+            if taken < BESIDE_REST * rest {
+                let cause = candidates[effect.candidate].id;
+                return Ok(Some(Reason::SmallBesideRest { cause, share: taken / rest }));
+            }
         }
-        let small = taken.iter().position(|taken| *taken < BESIDE_REST * rest);
-        Ok(small.map(|k| Reason::SmallBesideRest {
-            cause: candidates[finding.effects[k].candidate].id,
-            share: taken[k] / rest,
-        }))
+        Ok(None)
     }
 
     /// Lets what only says which suspect it is span those of the same name that do about as well.

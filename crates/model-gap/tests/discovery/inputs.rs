@@ -30,6 +30,10 @@ impl PointKind for Shaken {
     type Error = GapError;
 
     fn read(&self, own: &Oscillator) -> Result<Grid, GapError> {
+        if own.spring.min(own.damper) < 0.0 {
+            let (what, value, expected) = ("a spring or a damper", own.spring, "more than 0");
+            return Err(GapError::OutOfRange { what, value, expected });
+        }
         let at = |w: &f64| {
             let (real, imaginary) = (own.spring - own.mass * w * w, own.damper * w);
             let square = real * real + imaginary * imaginary;
@@ -52,7 +56,8 @@ fn asked(truth: Oscillator) -> KindFinding<Oscillator> {
             deviation: vec![DEVIATION_M; 2],
         })
         .collect();
-    let ratio = || vec![CauseParameter::ratio(&[0.97, 1.1], (0.3, 3.0))];
+    // no oscillator has a negative spring: that amount is left out
+    let ratio = || vec![CauseParameter::ratio(&[0.97, 1.1, -1.0], (0.3, 3.0))];
     let causes = [
         PointCause::new("spring", "it is softer", ratio(), |m: &mut Oscillator, v| {
             m.spring *= v[0];

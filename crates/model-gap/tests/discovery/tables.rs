@@ -195,6 +195,21 @@ fn what_was_planted_is_named_with_its_amount() {
 }
 
 /// A point far off, or two neighbours, is no cause.
+/// A cause that looks like the one found and whose model could not be read was not tried: it is not excluded.
+#[test]
+fn what_was_not_tried_is_not_excluded() {
+    let sweep = Sweep::default();
+    let mut table = sweep.table(37, |mu, speed| with("stiffness", 1.04, mu, speed));
+    table.suspects[0].confused_with = &["drag"];
+    assert!(is_confident(&table.find().unwrap()));
+    table.suspects[1].blocked = Some("no model".to_owned());
+    assert!(is_confident(&table.find().unwrap()), "the points cannot show it");
+    table.suspects[1].is_unread = true;
+    let found = table.find().unwrap();
+    assert_eq!(names(&found), ["stiffness"]);
+    assert!(!is_confident(&found));
+}
+
 #[test]
 fn a_point_far_off_has_no_name() {
     let sweep = Sweep { points: 40, ..Sweep::default() };

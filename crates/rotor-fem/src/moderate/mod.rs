@@ -43,7 +43,7 @@ pub(crate) trait Scalar:
     /// A real value, everywhere.
     fn from_real(value: f64) -> Self;
     /// Sine and cosine of an angle in rad.
-    fn turned(self) -> (Self, Self);
+    fn sine_cosine(self) -> (Self, Self);
 
     #[inline(always)]
     fn zero() -> Self {
@@ -63,7 +63,7 @@ impl Scalar for f64 {
     }
 
     #[inline(always)]
-    fn turned(self) -> (Self, Self) {
+    fn sine_cosine(self) -> (Self, Self) {
         self.sin_cos()
     }
 }
@@ -75,7 +75,7 @@ impl Scalar for Lanes {
     }
 
     #[inline(always)]
-    fn turned(self) -> (Self, Self) {
+    fn sine_cosine(self) -> (Self, Self) {
         self.sin_cos()
     }
 }
@@ -85,7 +85,7 @@ impl Scalar for Complex<f64> {
         Self::from(value)
     }
 
-    fn turned(self) -> (Self, Self) {
+    fn sine_cosine(self) -> (Self, Self) {
         (self.sin(), self.cos())
     }
 }

@@ -73,7 +73,7 @@ impl<T: Scalar> Turn<T> {
     /// At pitch plus built-in twist, rad, and an elastic twist.
     #[inline(always)]
     pub(crate) fn new(theta_rad: T, phi_rad: T) -> Self {
-        let (sin, cos) = (phi_rad + theta_rad).turned();
+        let (sin, cos) = (phi_rad + theta_rad).sine_cosine();
         Self { sin, cos }
     }
 

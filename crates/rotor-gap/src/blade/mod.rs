@@ -15,7 +15,7 @@ pub use frequencies::Frequencies;
 use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
 use crate::error::RotorGapError;
 use crate::properties::OfCase;
-use crate::rotor::with_inputs;
+use crate::rotor::{moved_inputs, with_inputs};
 use measured_data::Scatter;
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
 use rotor_study::case::{Case, UncertainField};
@@ -127,5 +127,6 @@ pub fn diagnose_blade(
     let KindFinding { table, found, alternatives, inputs, mut extended } = asked.answer()?;
     extended.case.structure.modes = question.case.structure.modes.clone();
     let extended = (extended.case != *question.case).then_some(extended.case);
-    Ok(CaseDiagnosis { table, found, alternatives, inputs, extended })
+    let moved = moved_inputs(question.uncertain.iter().map(|own| own.field.as_str()), &inputs);
+    Ok(CaseDiagnosis { table, found, alternatives, moved, extended })
 }

@@ -133,7 +133,7 @@ pub fn diagnose(question: &RotorQuestion<'_>) -> Result<RotorDiagnosis, RotorGap
         _ => Vec::new(),
     };
     let extended = case_of(extended, &flights.model);
-    let moved = moved_inputs(uncertain, &inputs);
+    let moved = moved_inputs(uncertain.iter().map(|own| own.field.as_str()), &inputs);
     Ok(RotorDiagnosis { table, found, causes, aside, alternatives, moved, extended, won_back })
 }
 

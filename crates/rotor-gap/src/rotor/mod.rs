@@ -26,7 +26,6 @@ pub use feedback::WonBack;
 pub use flight::predict;
 pub use model::{FlapDriveModel, LoadPath, RotorModel};
 pub(crate) use spread::in_percent;
-pub use spread::{
-    USUAL_UNCERTAIN, alternatives, moved_inputs, stated, usual_uncertain, with_inputs,
-};
+pub(crate) use spread::moved_inputs;
+pub use spread::{USUAL_UNCERTAIN, alternatives, stated, usual_uncertain, with_inputs};
 pub use sweep::{Aside, Sweep, SweepChannel, SweepPoint};

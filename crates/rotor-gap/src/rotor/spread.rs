@@ -39,10 +39,10 @@ pub fn stated(uncertain: &[UncertainField], from: &str) -> String {
     format!("uncertain (1 sd, {from}): {}", all.join(", "))
 }
 
-/// What uncertain fields were moved by, in words; none where none was.
-pub fn moved_inputs(uncertain: &[UncertainField], by: &[f64]) -> Option<String> {
-    let fields = uncertain.iter().zip(by).filter(|(_, by)| **by != 0.0);
-    let all: Vec<String> = fields.map(|(own, by)| format!("{} {by:+.1} sd", own.field)).collect();
+/// What uncertain inputs of these names were moved by, in words; none where none was.
+pub(crate) fn moved_inputs<'a>(names: impl Iterator<Item = &'a str>, by: &[f64]) -> Option<String> {
+    let moved = names.zip(by).filter(|(_, by)| **by != 0.0);
+    let all: Vec<String> = moved.map(|(name, by)| format!("{name} {by:+.1} sd")).collect();
     let text = format!(
         "what was found is beside uncertain inputs as the points have them: {}",
         all.join(", ")

@@ -14,6 +14,7 @@ pub use loops::{LOADS, LoadPart, SectionLoads, SectionMotion};
 
 use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
 use crate::error::RotorGapError;
+use crate::rotor::moved_inputs;
 use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Motion, StallAirfoil};
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
 use rayon::prelude::*;
@@ -260,5 +261,6 @@ pub fn diagnose_section(
         flap.effectiveness = EffectivenessValues { lift, moment, hinge };
     }
     let extended = (case != *question.case).then_some(case);
-    Ok(CaseDiagnosis { table, found, alternatives, inputs, extended })
+    let moved = moved_inputs(instruments[1..].iter().map(String::as_str), &inputs);
+    Ok(CaseDiagnosis { table, found, alternatives, moved, extended })
 }

@@ -4,22 +4,22 @@
 use measured_data::{DatasetKind, Folder, PointData, Source};
 use model_gap::discovery::{Confidence, Finding, Verdict};
 use rotor_gap::{RotorDiagnosis, RotorQuestion, Sweep, diagnose};
+use rotor_truth::asked::Asked;
 use rotor_truth::physics::balance::Resolution;
-use rotor_truth::set::made::{Request, make};
+use rotor_truth::set::made::make;
 use sim_driver::case::read_case;
 
 /// A set of few points, diagnosed as `hhc diagnose` does.
 fn diagnosed(seed: u64, effect: &str, size: Option<f64>) -> RotorDiagnosis {
-    let made = make(&Request {
+    let asked = Asked {
         seed,
         snr_db: 40.0,
         effect: Some(effect.to_owned()),
         size,
         points: Some(6),
         base_error: true,
-        resolution: Resolution::default(),
-    });
-    let made = made.unwrap();
+    };
+    let made = make(&asked, Resolution::default()).unwrap();
     let source = Source { name: "case.ron".into(), text: made.case_ron };
     let case = read_case(&source, &Folder::Disk(".".into())).unwrap();
     let source = Source { name: "sweep.csv".into(), text: made.sweep_csv };

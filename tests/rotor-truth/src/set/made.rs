@@ -6,6 +6,7 @@ use super::fly::fly;
 use super::layout::Layout;
 use super::machine::Machine;
 use super::{case, table};
+use crate::asked::Asked;
 use crate::draw::{Parameters, stream};
 use crate::error::RotorTruthError;
 use crate::physics::balance::Resolution;
@@ -15,25 +16,6 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde::Serialize;
 use std::collections::BTreeMap;
-
-/// What a set is asked to be.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// Seed of everything that is drawn.
-    pub seed: u64,
-    /// Noise below the readings, dB.
-    pub snr_db: f64,
-    /// Effect; drawn by the seed if none.
-    pub effect: Option<String>,
-    /// Its size; drawn if none.
-    pub size: Option<f64>,
-    /// Number of points; drawn if none.
-    pub points: Option<usize>,
-    /// Whether the uncertain inputs of the case are off by their deviations.
-    pub base_error: bool,
-    /// How finely the rotor is resolved.
-    pub resolution: Resolution,
-}
 
 /// What is hidden in a set.
 #[derive(Debug, Clone, Serialize)]
@@ -92,24 +74,24 @@ fn with_base_error(blade: &mut Blade, rng: &mut ChaCha8Rng) -> BTreeMap<&'static
     out
 }
 
-/// Makes a set.
+/// Makes a set, the rotor resolved as finely as asked.
 ///
 /// # Errors
 /// [`RotorTruthError`] of an unknown effect, a number of points out of range, or a point that does not converge.
-pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
-    let mut rng = stream(request.seed, 0);
+pub fn make(asked: &Asked, resolution: Resolution) -> Result<Made, RotorTruthError> {
+    let mut rng = stream(asked.seed, 0);
     let chosen = drawn(&mut rng);
-    let chosen = request.effect.as_deref().map_or(Ok(chosen), entry)?;
-    let mut of_layout = stream(request.seed, 1);
+    let chosen = asked.effect.as_deref().map_or(Ok(chosen), entry)?;
+    let mut of_layout = stream(asked.seed, 1);
     let drawn_points = of_layout.random_range(20..=50);
-    let points = request.points.unwrap_or(drawn_points);
+    let points = asked.points.unwrap_or(drawn_points);
     if !(4..=400).contains(&points) {
         let (what, expected) = ("the number of points", "4 to 400");
         return Err(RotorTruthError::Value { what, value: points as f64, expected });
     }
     let layout = Layout::draw(&mut of_layout, points, chosen.needs_drive);
     // the product's model of Jones's lags has no Mach number that an effect could add
-    let has_beddoes = stream(request.seed, 4).random_range(0..6) == 0;
+    let has_beddoes = stream(asked.seed, 4).random_range(0..6) == 0;
     let needs_mach = chosen.name == "compressibility";
     let lags = if has_beddoes || needs_mach { Lags::Beddoes } else { Lags::Jones };
     let believed = Blade {
@@ -119,21 +101,21 @@ pub fn make(request: &Request) -> Result<Made, RotorTruthError> {
         ..Blade::default()
     };
     let mut machine = Machine::believed(believed.clone());
-    let base_ratios = if request.base_error {
-        with_base_error(&mut machine.blade, &mut stream(request.seed, 2))
+    let base_ratios = if asked.base_error {
+        with_base_error(&mut machine.blade, &mut stream(asked.seed, 2))
     } else {
         BTreeMap::new()
     };
-    let parameters = apply(chosen.name, request.size, &mut machine, &layout.drives, &mut rng)?;
-    let readings = fly(&machine, &layout.groups, request.resolution)?;
-    let mut noise = stream(request.seed, 3);
-    let sweep_csv = table::text(&layout.groups, &readings, request.snr_db, &mut noise);
+    let parameters = apply(chosen.name, asked.size, &mut machine, &layout.drives, &mut rng)?;
+    let readings = fly(&machine, &layout.groups, resolution)?;
+    let mut noise = stream(asked.seed, 3);
+    let sweep_csv = table::text(&layout.groups, &readings, asked.snr_db, &mut noise);
     let answer = Answer {
         effect: chosen.name.to_owned(),
         parameters,
         in_library: chosen.is_known,
-        seed: request.seed,
-        snr_db: request.snr_db,
+        seed: asked.seed,
+        snr_db: asked.snr_db,
         points: readings.iter().map(Vec::len).sum(),
         is_driven: layout.drives.is_driven,
         lags,

@@ -1,22 +1,24 @@
 //! Sets of points: their determinism, what their effects change, how finely they are resolved.
 
+use rotor_truth::asked::Asked;
 use rotor_truth::physics::balance::Resolution;
 use rotor_truth::physics::blade::Blade;
 use rotor_truth::physics::fourier::Pair;
 use rotor_truth::set::catalogue::CATALOGUE;
 use rotor_truth::set::fly::{Condition, Group, Readings, fly};
 use rotor_truth::set::machine::{Machine, OddBlade};
-use rotor_truth::set::made::{Request, make};
+use rotor_truth::set::made::make;
 
-fn request(effect: &str) -> Request {
-    Request {
+const COARSE: Resolution = Resolution { harmonics: 5, azimuths: 24, points: 4, segment: 0.35 };
+
+fn asked(effect: &str) -> Asked {
+    Asked {
         seed: 5,
         snr_db: 40.0,
         effect: Some(effect.to_owned()),
         size: None,
         points: Some(6),
         base_error: true,
-        resolution: Resolution { harmonics: 5, azimuths: 24, points: 4, segment: 0.35 },
     }
 }
 
@@ -38,9 +40,9 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn every_effect_changes_the_readings_and_nothing_else() {
-    let null = make(&request("null")).unwrap();
+    let null = make(&asked("null"), COARSE).unwrap();
     for entry in CATALOGUE {
-        let made = make(&request(entry.name)).unwrap();
+        let made = make(&asked(entry.name), COARSE).unwrap();
         let lines = made.sweep_csv.lines();
         assert_eq!(lines.count(), made.answer.points + 1, "{}", entry.name);
         assert!(!made.sweep_csv.contains(entry.name), "{}", entry.name);
@@ -56,7 +58,7 @@ fn every_effect_changes_the_readings_and_nothing_else() {
 fn the_number_of_threads_changes_nothing() {
     let on = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| make(&request("blade-dissimilarity")).unwrap().sweep_csv)
+        pool.install(|| make(&asked("blade-dissimilarity"), COARSE).unwrap().sweep_csv)
     };
     assert_eq!(on(1), on(3));
 }
@@ -100,7 +102,7 @@ fn like_blades_pass_on_multiples_of_their_number_alone() {
 
 #[test]
 fn what_cannot_be_is_refused() {
-    assert!(make(&request("gremlins")).unwrap_err().to_string().contains("stiffness-lag"));
-    let few = Request { points: Some(1), ..request("null") };
-    assert!(make(&few).unwrap_err().to_string().contains("4 to 400"));
+    assert!(make(&asked("gremlins"), COARSE).unwrap_err().to_string().contains("stiffness-lag"));
+    let few = Asked { points: Some(1), ..asked("null") };
+    assert!(make(&few, COARSE).unwrap_err().to_string().contains("4 to 400"));
 }

@@ -111,7 +111,8 @@ impl Asked<'_> {
         let (uncertain, from) = self.uncertain(&usual);
         let found = diagnose_blade(&self.question(uncertain), &measured);
         let found = found.map_err(|e| self.located(e))?;
-        let notes = vec![stated(uncertain, from)];
+        let mut notes = vec![stated(uncertain, from)];
+        notes.extend(found.moved);
         self.points("BladeFrequencies", found.table, found.found, (notes, found.extended))
     }
 
@@ -119,7 +120,8 @@ impl Asked<'_> {
         let measured = SectionLoads::of(&self.data.points).map_err(|e| self.located(e))?;
         let found = diagnose_section(&self.question(&[]), &measured);
         let found = found.map_err(|e| self.located(e))?;
-        let notes = vec![SAME_PRESSURES.to_owned()];
+        let mut notes = vec![SAME_PRESSURES.to_owned()];
+        notes.extend(found.moved);
         self.points("SectionLoops", found.table, found.found, (notes, found.extended))
     }
 
