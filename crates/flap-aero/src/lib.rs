@@ -64,7 +64,9 @@ pub use motion::layout::{MarchingSection, SectionInputs, StepFactors};
 pub use motion::linearise::{LagRateSlopes, LoadSlopes, lag_rate_slopes, load_slopes};
 pub use motion::march::SectionState;
 pub use motion::periodic::{CycleStep, periodic_state};
-pub use motion::response::{Motion, harmonic_response, indicial_response, steady_response};
+pub use motion::response::{
+    Motion, ResponseParts, harmonic_response, indicial_response, steady_response,
+};
 pub use stall::{
     FittedStall, StallAirfoil, StallParameters, StallSection, StallState, StalledLoads,
 };

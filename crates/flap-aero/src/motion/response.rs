@@ -33,6 +33,49 @@ impl Motion {
     }
 }
 
+/// What the complex amplitudes `[Cn, Cm, Ch]` of a section in a harmonic motion are made of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResponseParts {
+    /// Loads of the inputs as if each were held: no lag, no apparent mass.
+    pub held: [Complex64; 3],
+    /// What the lags take off.
+    pub lag: [Complex64; 3],
+    /// Loads of the rates of the inputs.
+    pub apparent_mass: [Complex64; 3],
+}
+
+impl ResponseParts {
+    /// Parts of the response to a motion of unit amplitude.
+    ///
+    /// ```text
+    /// held = (direct + sum output input) m      lag = - sum output (ik / (pole + ik)) input m      apparent mass = ik rate m
+    /// ```
+    /// with the reduced frequency `k = omega c / (2 U)`, 0 and up. Where pressure waves stand for apparent mass (compressible
+    /// models), they are in `lag`.
+    pub fn of(section: &SectionCoefficients, reduced_frequency: f64, motion: Motion) -> Self {
+        let inputs = motion.inputs(reduced_frequency);
+        let ik = Complex64::new(0.0, reduced_frequency);
+        let dot =
+            |row: &[f64; 4]| -> Complex64 { row.iter().zip(&inputs).map(|(w, m)| *w * m).sum() };
+        let mut held = section.direct.each_ref().map(dot);
+        let mut lag = [Complex64::ZERO; 3];
+        for own in &section.lags {
+            let drive = dot(&own.input);
+            let late = drive * ik / (ik + own.pole);
+            for ((held, lag), weight) in held.iter_mut().zip(&mut lag).zip(own.output) {
+                *held += weight * drive;
+                *lag -= weight * late;
+            }
+        }
+        Self { held, lag, apparent_mass: section.rate.each_ref().map(|row| ik * dot(row)) }
+    }
+
+    /// The loads: the sum of the parts.
+    pub fn loads(&self) -> [Complex64; 3] {
+        std::array::from_fn(|n| self.held[n] + self.lag[n] + self.apparent_mass[n])
+    }
+}
+
 /// Complex amplitudes `[Cn, Cm, Ch]` of a section in a harmonic motion of unit amplitude.
 ///
 /// ```text
@@ -51,22 +94,7 @@ pub fn harmonic_response(
     reduced_frequency: f64,
     motion: Motion,
 ) -> [Complex64; 3] {
-    let inputs = motion.inputs(reduced_frequency);
-    let ik = Complex64::new(0.0, reduced_frequency);
-    let mut loads = [Complex64::ZERO; 3];
-    for (load, (direct, rate)) in loads.iter_mut().zip(section.direct.iter().zip(&section.rate)) {
-        for ((d, r), m) in direct.iter().zip(rate).zip(&inputs) {
-            *load += (*d + ik * *r) * m;
-        }
-    }
-    for lag in &section.lags {
-        let drive: Complex64 = lag.input.iter().zip(&inputs).map(|(w, m)| *w * m).sum();
-        let state = drive * lag.pole / (ik + lag.pole);
-        for (load, weight) in loads.iter_mut().zip(lag.output) {
-            *load += weight * state;
-        }
-    }
-    loads
+    ResponseParts::of(section, reduced_frequency, motion).loads()
 }
 
 /// Loads `[Cn, Cm, Ch]` long after the inputs have come to rest.

@@ -8,13 +8,15 @@ use model_gap::points::{CauseParameter, PointCause, Shown};
 pub type SectionCause = PointCause<SectionModel>;
 
 /// Names of the causes of a section.
-pub const SECTION_LIBRARY: [&str; 6] = [
+pub const SECTION_LIBRARY: [&str; 8] = [
     "flap-effectiveness",
     "compressibility",
     "unsteady-lag",
     "timing",
     "sensor-gain",
     "dynamic-stall",
+    "pivot-compliance",
+    "pitch-axis",
 ];
 
 /// What the library is made for.
@@ -22,6 +24,8 @@ pub(super) struct Occasion<'a> {
     pub(super) model: &'a SectionModel,
     /// Whether a flap moves.
     pub(super) has_flap: bool,
+    /// Whether the section pitches.
+    pub(super) has_pitch: bool,
     /// Whether every frequency was stated.
     pub(super) has_frequency: bool,
     /// Largest incidence of a motion with an amplitude, deg.
@@ -48,7 +52,7 @@ fn share(amounts: &[f64]) -> CauseParameter {
 pub(super) fn library(o: &Occasion<'_>) -> Vec<SectionCause> {
     let mut all = vec![flap_effectiveness(o), compressibility(o), unsteady_lag(o), timing(o)];
     all.extend(o.instruments.iter().map(|name| sensor_gain(name)));
-    all.push(dynamic_stall(o));
+    all.extend([dynamic_stall(o), pivot_compliance(), pitch_axis(o)]);
     all
 }
 
@@ -90,28 +94,32 @@ fn compressibility(o: &Occasion<'_>) -> SectionCause {
 }
 
 fn unsteady_lag(o: &Occasion<'_>) -> SectionCause {
-    let physics =
-        "the loads lag the motion more or less: the unsteady part of the response times a ratio";
-    let none = o.model.lag_share;
-    let parameter = CauseParameter {
-        name: "ratio",
+    let physics = "the loads lag the motion more or less, by a wake or an apparent mass other than in theory: each times a ratio";
+    let (lag, mass) = (o.model.lag_share, o.model.mass_share);
+    let share = |name, none: f64| CauseParameter {
+        name,
         unit: "1",
         none,
         range: (-0.5, 4.0),
         amounts: vec![none + 0.2, none - 0.2, none + 1.0],
         shown: Shown::Itself,
     };
-    PointCause::new("unsteady-lag", physics, vec![parameter], move |m: &mut SectionModel, v| {
-        m.lag_share += v[0] - none;
+    let parameters = vec![share("ratio", lag), share("apparent_mass", mass)];
+    PointCause::new("unsteady-lag", physics, parameters, move |m: &mut SectionModel, v| {
+        m.lag_share += v[0] - lag;
+        m.mass_share += v[1] - mass;
     })
-    .beside(&["timing"], &["points at other reduced frequencies"])
+    .beside(&["timing", "pivot-compliance"], &["points at other reduced frequencies"])
 }
 
 fn timing(o: &Occasion<'_>) -> SectionCause {
     let physics = "the loads were sampled late against the motion, all by the same time";
     let delay = CauseParameter::both_ways("s", "s", &[0.0005, 0.002], 0.05);
     PointCause::new("timing", physics, vec![delay], |m: &mut SectionModel, v| m.delay_s += v[0])
-        .beside(&["unsteady-lag"], &["points at other frequencies", "a static load"])
+        .beside(
+            &["unsteady-lag", "pivot-compliance"],
+            &["points at other frequencies", "a static load"],
+        )
         .exact_to(0.005)
         .blocked_if(!o.has_frequency, "no `frequency_hz` was stated: a time is no phase")
 }
@@ -145,6 +153,39 @@ fn dynamic_stall(o: &Occasion<'_>) -> SectionCause {
         "no motion with an amplitude comes to 6 deg of incidence",
     )
     .blocked_if(o.model.stall.is_some(), "the sections of the case stall already")
+}
+
+fn pivot_compliance() -> SectionCause {
+    let physics = "the axis gives way: the section plunges with the normal force";
+    let give = CauseParameter {
+        name: "semichords_per_cn",
+        unit: "1",
+        none: 0.0,
+        range: (0.0, 2.0),
+        amounts: vec![0.1, 0.3],
+        shown: Shown::Itself,
+    };
+    PointCause::new("pivot-compliance", physics, vec![give], |m: &mut SectionModel, v| {
+        m.give += v[0];
+    })
+    .beside(
+        &["unsteady-lag", "timing"],
+        &[
+            "the plunge of the axis, by an accelerometer",
+            "a flap that moves while the section is held",
+        ],
+    )
+}
+
+fn pitch_axis(o: &Occasion<'_>) -> SectionCause {
+    let physics = "the section pitches about another axis than the quarter chord";
+    let aft = CauseParameter::both_ways("aft_chords", "1", &[0.05, 0.2], 1.0);
+    PointCause::new("pitch-axis", physics, vec![aft], |m: &mut SectionModel, v| m.axis_aft += v[0])
+        .beside(
+            &["pivot-compliance", "unsteady-lag"],
+            &["a ruler", "points at other reduced frequencies"],
+        )
+        .blocked_if(!o.has_pitch, "the section does not pitch")
 }
 
 /// Constants of the stall that an attached section may lack.

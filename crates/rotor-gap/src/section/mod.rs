@@ -15,10 +15,13 @@ pub use loops::{LOADS, LoadPart, SectionLoads, SectionMotion};
 use crate::diagnosis::{CaseDiagnosis, CaseQuestion};
 use crate::error::RotorGapError;
 use crate::rotor::moved_inputs;
-use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Motion, StallAirfoil};
+use flap_aero::{
+    AeroError, AttachedFlowModel, FlapEffectiveness, Motion, ResponseParts, StallAirfoil,
+};
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
+use nalgebra::Complex;
 use rayon::prelude::*;
-use rotor_base::HarmonicSeries;
+use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_study::case::{Case, CompressibilityChoice, EffectivenessValues};
 use section_study::{LoopQuestion, SectionChoice, loop_history, section_response};
 use std::collections::BTreeMap;
@@ -49,12 +52,18 @@ pub struct SectionModel {
     pub effectiveness: [f64; 3],
     /// Mach number of the sections over that of the flow: 0 of incompressible ones.
     pub mach_share: f64,
-    /// Unsteady part of the response, 1 as the model has it, 0 of a quasi-steady one.
+    /// What the lags take off over what they do in theory: 0 of a quasi-steady section.
     pub lag_share: f64,
+    /// Apparent mass over that of theory: 0 of a quasi-steady section.
+    pub mass_share: f64,
     /// How the section stalls; none of attached flow.
     pub stall: Option<StallAirfoil>,
     /// Part of what dynamic stall changes that an attached section has.
     pub stall_share: f64,
+    /// Position of the pitch axis, chords behind the quarter chord.
+    pub axis_aft: f64,
+    /// How far the axis plunges, up, under the normal force, semichords per `cn`; 0 of a rigid one.
+    pub give: f64,
     /// Delay of the loads against the motion, s.
     pub delay_s: f64,
     /// Gains of instruments that are off, by their names.
@@ -68,17 +77,20 @@ impl SectionModel {
         let factors = flap.map_or_else(EffectivenessValues::default, |own| own.effectiveness);
         let is_compressible = case.aerodynamics.compressibility == CompressibilityChoice::LocalMach
             && case.aerodynamics.model != AttachedFlowModel::Incompressible;
+        let unsteady =
+            f64::from(u8::from(case.aerodynamics.model != AttachedFlowModel::QuasiSteady));
         Self {
             attached: case.aerodynamics.model,
             flap_chord: flap.map_or(0.0, |own| own.chord_fraction),
             has_hinge,
             effectiveness: [factors.lift, factors.moment, factors.hinge],
             mach_share: f64::from(u8::from(is_compressible)),
-            lag_share: f64::from(u8::from(
-                case.aerodynamics.model != AttachedFlowModel::QuasiSteady,
-            )),
+            lag_share: unsteady,
+            mass_share: unsteady,
             stall: case.aerodynamics.dynamic_stall.airfoil(),
             stall_share: 0.0,
+            axis_aft: 0.0,
+            give: 0.0,
             delay_s: 0.0,
             gains: BTreeMap::new(),
         }
@@ -93,25 +105,84 @@ impl SectionModel {
 
     /// Loads of a motion, each over the phase of the motion and over its amplitude, but for the mean.
     fn loads(&self, motion: &SectionMotion) -> Result<[HarmonicSeries; 3], AeroError> {
-        let quasi_steady = AttachedFlowModel::QuasiSteady;
-        let unsteady = match self.attached {
-            AttachedFlowModel::QuasiSteady => AttachedFlowModel::Calibrated,
-            other => other,
-        };
-        let own = |model, stall| cycle(&self.choice(model, motion.mach)?, motion, stall);
-        let mut terms = Vec::new();
-        if self.lag_share != 0.0 {
-            terms.push((self.lag_share, own(unsteady, self.stall)?));
-        }
-        let at_once = 1.0 - self.lag_share;
-        if at_once != 0.0 {
-            terms.push((at_once, own(quasi_steady, self.stall)?));
-        }
+        let (mach, k) = (motion.mach, motion.reduced_frequency);
+        let own = |stall| cycle(&self.choice(self.attached, mach)?, motion, stall);
+        let mut loads = own(self.stall)?;
         if self.stall_share != 0.0 && self.stall.is_none() {
-            terms.push((self.stall_share, own(self.attached, Some(causes::STALL))?));
-            terms.push((-self.stall_share, own(self.attached, None)?));
+            let terms =
+                [(self.stall_share, own(Some(causes::STALL))?), (1.0 - self.stall_share, loads)];
+            loads = std::array::from_fn(|load| sum(&terms, load));
         }
-        Ok(std::array::from_fn(|load| sum(&terms, load)))
+        let more = self.more_unsteady(motion.motion, mach, k)?;
+        add(&mut loads, 1, more);
+        if self.axis_aft != 0.0 && motion.motion == Motion::Pitch {
+            // the quarter chord rises by the arm
+            let velocity = Complex::new(0.0, -2.0 * k * self.axis_aft);
+            add(&mut loads, 1, self.of_plunge(mach, k)?.map(|own| own * velocity));
+        }
+        if self.give != 0.0 {
+            for n in 1..=RESOLVED {
+                let given = self.given(mach, n as f64 * k, complex(&loads[0], n))?;
+                add(&mut loads, n, given);
+            }
+        }
+        Ok(loads)
+    }
+
+    /// What lag and apparent mass add to the response of the section model, where they are not its own.
+    fn more_unsteady(&self, motion: Motion, mach: f64, k: f64) -> Result<Loads, AeroError> {
+        let own = f64::from(u8::from(self.attached != AttachedFlowModel::QuasiSteady));
+        let [lag, mass] = [self.lag_share - own, self.mass_share - own];
+        if lag == 0.0 && mass == 0.0 {
+            return Ok(Loads::default());
+        }
+        let parts = |model| -> Result<ResponseParts, AeroError> {
+            let (coefficients, ..) = self.choice(model, mach)?.coefficients()?;
+            Ok(ResponseParts::of(&coefficients, k, motion))
+        };
+        if self.attached != AttachedFlowModel::QuasiSteady {
+            let of = parts(self.attached)?;
+            return Ok(std::array::from_fn(|n| lag * of.lag[n] + mass * of.apparent_mass[n]));
+        }
+        // the quasi-steady model has a part of the apparent mass in its rate terms
+        let (of, at_once) = (parts(AttachedFlowModel::Calibrated)?, parts(self.attached)?.loads());
+        let all = of.loads();
+        Ok(std::array::from_fn(|n| lag * of.lag[n] + mass * (all[n] - of.lag[n] - at_once[n])))
+    }
+
+    /// Loads of a plunge velocity over that of the flow of 1, in attached flow.
+    fn of_plunge(&self, mach: f64, k: f64) -> Result<Loads, AeroError> {
+        let found = section_response(&self.choice(self.attached, mach)?, Motion::Plunge, k)?;
+        let more = self.more_unsteady(Motion::Plunge, mach, k)?;
+        let own = [found.cn, found.cm, found.ch].map(|[re, im]| Complex::new(re, im));
+        Ok(std::array::from_fn(|n| own[n] + more[n]))
+    }
+
+    /// Loads of an axis that plunges with the normal force `held`, by `h = -give cn` in semichords, down positive. The
+    /// plunge velocity over that of the flow is `i k h`, so that `cn = held / (1 + i k give G)` with `G` the normal force of
+    /// a unit plunge velocity.
+    fn given(&self, mach: f64, k: f64, held: Complex<f64>) -> Result<Loads, AeroError> {
+        let of_plunge = self.of_plunge(mach, k)?;
+        let per_cn = Complex::new(0.0, -k * self.give);
+        let velocity = per_cn * held / (1.0 - per_cn * of_plunge[0]);
+        Ok(of_plunge.map(|own| own * velocity))
+    }
+}
+
+/// Complex amplitudes of `cn`, `cm` and `ch` over a sine.
+type Loads = [Complex<f64>; 3];
+
+/// A harmonic over a sine.
+fn complex(series: &HarmonicSeries, n: usize) -> Complex<f64> {
+    let own = series.harmonic(n);
+    Complex::new(own.sine, own.cosine)
+}
+
+/// Adds complex amplitudes to a harmonic.
+fn add(loads: &mut [HarmonicSeries; 3], n: usize, more: Loads) {
+    for (series, more) in loads.iter_mut().zip(more) {
+        let own = complex(series, n) + more;
+        series.set_harmonic(n, Harmonic { cosine: own.im, sine: own.re });
     }
 }
 
@@ -141,7 +212,7 @@ fn cycle(
         let found = section_response(section, motion.motion, k)?;
         let series = |[re, im]: [f64; 2]| {
             let mut own = HarmonicSeries::zero(1);
-            own.set_harmonic(1, rotor_base::Harmonic { cosine: im, sine: re });
+            own.set_harmonic(1, Harmonic { cosine: im, sine: re });
             own
         };
         return Ok([found.cn, found.cm, found.ch].map(series));
@@ -224,6 +295,7 @@ pub fn diagnose_section(
     let causes = causes::library(&causes::Occasion {
         model: &model,
         has_flap: measured.motions.iter().any(|own| own.motion == Motion::Flap),
+        has_pitch: instruments.len() > 1,
         has_frequency: measured.motions.iter().all(|own| own.frequency_hz.is_some()),
         highest_deg: measured.motions.iter().map(SectionMotion::highest_deg).fold(0.0, f64::max),
         instruments: &instruments,

@@ -77,6 +77,13 @@ fn a_blade_of_another_program_is_told_by_what_it_hides() {
 
 #[test]
 fn a_section_of_another_program_is_told_by_what_it_hides() {
-    let known = [("flap-effectiveness", 0.75), ("sensor-gain", 0.8), ("timing", 0.002)];
+    let known = [
+        ("flap-effectiveness", 0.75),
+        ("sensor-gain", 0.8),
+        ("timing", 0.002),
+        ("unsteady-lag", 0.5),
+        ("pivot-compliance", 0.4),
+        ("pitch-axis", 0.3),
+    ];
     tells_apart(SetKind::Section, &known, ("channel-leak", Some(0.05)));
 }

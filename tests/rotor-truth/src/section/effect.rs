@@ -9,7 +9,7 @@ use crate::draw::{Draw, Parameters, told};
 use serde_json::json;
 
 /// Every effect.
-pub const CATALOGUE: [Effect; 12] = [
+pub const CATALOGUE: [Effect; 14] = [
     known(NULL),
     known("flap-effectiveness"),
     known("compressibility"),
@@ -17,11 +17,13 @@ pub const CATALOGUE: [Effect; 12] = [
     known("timing"),
     known("sensor-gain"),
     known("dynamic-stall"),
-    outside("pitch-axis"),
+    known("pivot-compliance"),
+    known("pitch-axis"),
     outside("returning-wake"),
     outside("flap-chord"),
-    outside("flexing-pivot"),
+    outside("tunnel-walls"),
     outside("channel-leak"),
+    outside("inertia"),
 ];
 
 /// Puts an effect into a section; the parameters of none are empty.
@@ -51,8 +53,11 @@ fn of_library(
             told([("share", json!(own.mach_share))])
         }
         "unsteady-lag" => {
-            own.unsteady = draw.log_ratio(0.15, 0.8);
-            told([("ratio", json!(own.unsteady))])
+            // of all that is not at once, or of the wake alone
+            let ratio = draw.log_ratio(0.15, 0.8);
+            let share = if draw.is_up() { &mut own.unsteady } else { &mut own.wake_lag };
+            *share = ratio;
+            told([("ratio", json!(ratio))])
         }
         "timing" => {
             own.late_s = draw.log_size(2e-4, 3e-3);
@@ -73,6 +78,16 @@ fn of_library(
             own.stall = Some(Stall::at(angle_deg.to_radians()));
             told([("stall_angle_deg", json!(angle_deg))])
         }
+        "pitch-axis" => {
+            // over the chord, aft positive
+            let aft = draw.signed(0.08, 0.5);
+            own.geometry.pitch_axis += 2.0 * aft;
+            told([("aft_chords", json!(aft))])
+        }
+        "pivot-compliance" => {
+            own.give = draw.log_size(0.06, 0.6);
+            told([("semichords_per_cn", json!(own.give))])
+        }
         _ => return None,
     })
 }
@@ -80,12 +95,6 @@ fn of_library(
 /// Effects that the list of the product does not have.
 fn beyond(name: &str, own: &mut Specimen, draw: &mut Draw<'_>) -> Option<Parameters> {
     Some(match name {
-        "pitch-axis" => {
-            // over the chord, aft positive
-            let aft = draw.signed(0.08, 0.5);
-            own.geometry.pitch_axis += 2.0 * aft;
-            told([("aft_chords", json!(aft))])
-        }
         "returning-wake" => {
             let spacing = draw.log_size(4.0, 15.0);
             let travel = draw.log_size(20.0, 100.0);
@@ -97,9 +106,14 @@ fn beyond(name: &str, own: &mut Specimen, draw: &mut Draw<'_>) -> Option<Paramet
             own.geometry.flap_chord *= ratio;
             told([("ratio", json!(ratio))])
         }
-        "flexing-pivot" => {
-            own.give = draw.log_size(0.06, 0.6);
-            told([("semichords_per_cn", json!(own.give))])
+        "tunnel-walls" => {
+            own.chord_over_height = draw.log_size(0.25, 0.7);
+            told([("chord_over_height", json!(own.chord_over_height))])
+        }
+        "inertia" => {
+            let mass = draw.signed(0.5, 3.0);
+            own.inertia = [mass, draw.within(0.2, 0.5)];
+            told([("cn_per_k2", json!(mass)), ("arm_chords", json!(own.inertia[1]))])
         }
         "channel-leak" => {
             own.leak = draw.signed(0.01, 0.06);

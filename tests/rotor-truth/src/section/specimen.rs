@@ -5,7 +5,7 @@ use super::stall::Stall;
 use super::theory::{Flow, Geometry, Loads, Motion, QUARTER_CHORD};
 use super::wake::ReturningWake;
 use nalgebra::Complex;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Samples of a cycle in the march of a stalled section.
 const SAMPLES: u32 = 1440;
@@ -21,12 +21,19 @@ pub struct Specimen {
     pub mach_share: f64,
     /// Share of unsteady flow.
     pub unsteady: f64,
+    /// Share of the lag by the wake alone.
+    pub wake_lag: f64,
     /// Wakes that return.
     pub returning: Option<ReturningWake>,
     /// How it stalls, if it does.
     pub stall: Option<Stall>,
+    /// Chord over the height of the tunnel; 0 in free air.
+    pub chord_over_height: f64,
     /// Plunge by which its pivot gives way under the normal force, semichords per `cn`.
     pub give: f64,
+    /// What is left in the loads of the inertia of the section in pitch: `cn` over the reduced frequency squared, and the arm
+    /// behind the quarter chord, chords.
+    pub inertia: [f64; 2],
     /// Gain of all loads.
     pub gain: f64,
     /// Delay of all loads, s.
@@ -45,9 +52,12 @@ impl Specimen {
             flap: [1.0; 3],
             mach_share: 0.0,
             unsteady: 1.0,
+            wake_lag: 1.0,
             returning: None,
             stall: None,
+            chord_over_height: 0.0,
             give: 0.0,
+            inertia: [0.0; 2],
             gain: 1.0,
             late_s: 0.0,
             pitch_read: 1.0,
@@ -61,6 +71,7 @@ impl Specimen {
             mach: mach * self.mach_share,
             returning: self.returning,
             unsteady: self.unsteady,
+            wake_lag: self.wake_lag,
         };
         let own =
             |motion: Motion| self.geometry.loads(&self.geometry.downwash(motion, k), k, &flow);
@@ -70,6 +81,17 @@ impl Specimen {
                 *own *= factor;
             }
         }
+        if self.chord_over_height > 0.0 {
+            // images of the lift curve the stream (Allen and Vincenti, NACA Report 782)
+            let images = PI * PI / 48.0 * self.chord_over_height.powi(2);
+            let angle = self.geometry.downwash(Motion::Plunge, 1.0);
+            let of_angle = self.geometry.loads(&angle, k, &flow).map(|own| own / Complex::i());
+            let cn = loads[0];
+            let turned = images / TAU * (cn + 4.0 * loads[1]);
+            for ((own, more), part) in loads.iter_mut().zip(of_angle).zip([1.0, -0.25, 0.0]) {
+                *own += turned * more + images * part * cn;
+            }
+        }
         if self.give != 0.0 {
             // lift pushes the section up, and its plunge makes lift in turn
             let plunge = own(Motion::Plunge);
@@ -77,6 +99,11 @@ impl Specimen {
             for (own, more) in loads.iter_mut().zip(plunge) {
                 *own += down * more;
             }
+        }
+        if motion == Motion::Pitch {
+            let [mass, arm] = self.inertia;
+            loads[0] += mass * k * k;
+            loads[1] -= arm * mass * k * k;
         }
         loads
     }
@@ -172,6 +199,18 @@ mod tests {
                 assert!((sum(f64::cos) - ahead).abs() < 1e-3, "{motion:?} {n}");
             }
         }
+    }
+
+    /// Lift of a section between walls at rest, Allen and Vincenti.
+    #[test]
+    fn walls_add_to_the_lift() {
+        let free = Specimen::believed(0.2);
+        let walled = Specimen { chord_over_height: 0.4, ..free.clone() };
+        let of = |own: &Specimen| own.aerodynamic(Motion::Pitch, 0.0, 0.0).map(|own| own.re);
+        let images = PI * PI / 48.0 * 0.16;
+        let lift = of(&free)[0] * (1.0 + 2.0 * images);
+        assert!((of(&walled)[0] - lift).abs() < 1e-9 * lift);
+        assert!((of(&walled)[1] + 0.25 * images * of(&free)[0]).abs() < 1e-9);
     }
 
     #[test]

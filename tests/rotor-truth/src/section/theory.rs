@@ -54,6 +54,8 @@ pub struct Flow {
     pub returning: Option<ReturningWake>,
     /// Share of unsteady flow; the rest is quasi-steady: no lag, no apparent mass.
     pub unsteady: f64,
+    /// Share of the lag by the wake alone.
+    pub wake_lag: f64,
 }
 
 /// `int cos m t` from the hinge to the trailing edge.
@@ -121,8 +123,8 @@ impl Geometry {
         } else {
             0.0
         };
-        let circulation =
-            deficiency(slower, flow.returning) * Complex::from_polar(1.0, slower * phase);
+        let circulation = 1.0 - flow.wake_lag * (1.0 - deficiency(slower, flow.returning));
+        let circulation = circulation * Complex::from_polar(1.0, slower * phase);
         let unsteady = self.of_series(angle, k, circulation);
         let at_once = self.of_series(angle, 0.0, Complex::new(1.0, 0.0));
         std::array::from_fn(|n| {
@@ -135,7 +137,7 @@ impl Geometry {
 mod tests {
     use super::*;
 
-    const STILL: Flow = Flow { mach: 0.0, returning: None, unsteady: 1.0 };
+    const STILL: Flow = Flow { mach: 0.0, returning: None, unsteady: 1.0, wake_lag: 1.0 };
 
     fn near(own: Complex<f64>, exact: Complex<f64>) {
         assert!((own - exact).norm() < 2e-5 * (1.0 + exact.norm()), "{own} {exact}");
