@@ -107,6 +107,7 @@ fn loops(seed: u64, plant: &Plant) -> String {
             reduced_frequency: k,
             points: 60,
             stall: plant.stall,
+            stalls_later_rad: 0.0,
         });
         let rows = table.unwrap().rows;
         // as if the chord were 0.3 m in air at 20 C

@@ -44,6 +44,8 @@ pub struct LoopQuestion {
     pub points: usize,
     /// How the section stalls; `None` is attached flow.
     pub stall: Option<StallAirfoil>,
+    /// Incidence by which it stalls later than its constants say, rad.
+    pub stalls_later_rad: f64,
 }
 
 /// Columns every loop has.
@@ -222,8 +224,9 @@ pub fn loop_history(question: &LoopQuestion) -> Result<SectionTable, AeroError> 
         });
     };
     remarks.extend(stall_remark(airfoil, mach.value()));
-    let stalling = StallSection::new(mach, flap, airfoil.parameters(mach))?
-        .with_flap_effectiveness(&question.section.effectiveness);
+    let stalling =
+        StallSection::new(mach, flap, airfoil.parameters(mach).later(question.stalls_later_rad))?
+            .with_flap_effectiveness(&question.section.effectiveness);
     let last = &cycle.inputs[cycle.inputs.len() - 1];
     let [cn, ..] = state.loads(&section, last)?;
     let mut stall = StallState::settled(&stalling, cn, &last.modes);

@@ -58,6 +58,13 @@ const NACA_0012: [[f64; 14]; 7] = [
 ];
 
 impl StallParameters {
+    /// The same constants of an aerofoil that stalls later by an incidence, rad; its critical normal force in proportion.
+    #[must_use]
+    pub fn later(self, by_rad: f64) -> Self {
+        let alpha1_rad = self.alpha1_rad + by_rad;
+        Self { alpha1_rad, cn1: self.cn1 * alpha1_rad / self.alpha1_rad, ..self }
+    }
+
     /// The NACA 0012 at a Mach number, linear between the published columns (Mach 0.3 to 0.8), the
     /// end columns beyond.
     pub fn naca_0012(mach: Mach) -> Self {

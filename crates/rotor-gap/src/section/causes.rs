@@ -1,7 +1,7 @@
 //! What the simulation of a section may lack.
 
 use super::SectionModel;
-use flap_aero::{AttachedFlowModel, StallAirfoil};
+use flap_aero::{AttachedFlowModel, Mach, StallAirfoil};
 use model_gap::points::{CauseParameter, PointCause, Shown};
 
 /// A cause, ready for one section.
@@ -28,14 +28,18 @@ pub(super) struct Occasion<'a> {
     pub(super) has_pitch: bool,
     /// Whether every frequency was stated.
     pub(super) has_frequency: bool,
-    /// Largest incidence of a motion with an amplitude, deg.
-    pub(super) highest_deg: f64,
+    /// Largest incidence of a motion with an amplitude, deg, and its Mach number.
+    pub(super) highest: (f64, f64),
     /// Names of the instruments.
     pub(super) instruments: &'a [String],
 }
 
 /// Incidence below which no section is near stall, deg.
 const NEAR_STALL_DEG: f64 = 6.0;
+/// Earliest stall, deg.
+const EARLIEST_DEG: f64 = 4.0;
+/// What loops that the constants were fitted to keep of a part of what stall changes.
+const STALL_FORM: f64 = 0.25;
 
 fn share(amounts: &[f64]) -> CauseParameter {
     CauseParameter {
@@ -138,18 +142,28 @@ fn sensor_gain(instrument: &str) -> SectionCause {
 }
 
 fn dynamic_stall(o: &Occasion<'_>) -> SectionCause {
-    let physics = "the flow separates and a vortex leaves the leading edge: a share of what dynamic stall changes";
-    PointCause::new(
-        "dynamic-stall",
-        physics,
-        vec![share(&[0.2, 1.0])],
-        |m: &mut SectionModel, v| {
-            m.stall_share += v[0];
-        },
-    )
+    let physics = "the flow separates and a vortex leaves the leading edge, from an incidence on";
+    let (highest_deg, mach) = o.highest;
+    let mach = Mach::new(mach * o.model.mach_share).unwrap_or(Mach::ZERO);
+    let stated_deg = STALL.parameters(mach).alpha1_rad.to_degrees();
+    // how far the motion that goes furthest goes beyond the stall
+    let deepest = (highest_deg - EARLIEST_DEG).max(1.0);
+    let onset = CauseParameter {
+        name: "onset_deg",
+        unit: "deg",
+        none: 0.0,
+        range: (0.0, deepest),
+        amounts: [2.0, 0.5, 5.0, 10.0].into_iter().filter(|own| *own < deepest).collect(),
+        shown: Shown::Beside(vec![(0.0, highest_deg), (deepest, highest_deg - deepest)]),
+    };
+    PointCause::new("dynamic-stall", physics, vec![onset], move |m: &mut SectionModel, v| {
+        let later_deg = highest_deg - v[0] - stated_deg;
+        m.stalls_later_rad = (v[0] > 0.0).then_some(later_deg.to_radians());
+    })
     .beside(&["unsteady-lag"], &["a smaller mean incidence", "a smaller amplitude"])
+    .exact_to(STALL_FORM)
     .blocked_if(
-        o.highest_deg < NEAR_STALL_DEG,
+        highest_deg < NEAR_STALL_DEG,
         "no motion with an amplitude comes to 6 deg of incidence",
     )
     .blocked_if(o.model.stall.is_some(), "the sections of the case stall already")

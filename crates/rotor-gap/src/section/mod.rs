@@ -58,8 +58,8 @@ pub struct SectionModel {
     pub mass_share: f64,
     /// How the section stalls; none of attached flow.
     pub stall: Option<StallAirfoil>,
-    /// Part of what dynamic stall changes that an attached section has.
-    pub stall_share: f64,
+    /// Incidence by which an attached section stalls later than the constants of a stall say, rad; none of attached flow.
+    pub stalls_later_rad: Option<f64>,
     /// Position of the pitch axis, chords behind the quarter chord.
     pub axis_aft: f64,
     /// How far the axis plunges, up, under the normal force, semichords per `cn`; 0 of a rigid one.
@@ -88,7 +88,7 @@ impl SectionModel {
             lag_share: unsteady,
             mass_share: unsteady,
             stall: case.aerodynamics.dynamic_stall.airfoil(),
-            stall_share: 0.0,
+            stalls_later_rad: None,
             axis_aft: 0.0,
             give: 0.0,
             delay_s: 0.0,
@@ -106,13 +106,11 @@ impl SectionModel {
     /// Loads of a motion, each over the phase of the motion and over its amplitude, but for the mean.
     fn loads(&self, motion: &SectionMotion) -> Result<[HarmonicSeries; 3], AeroError> {
         let (mach, k) = (motion.mach, motion.reduced_frequency);
-        let own = |stall| cycle(&self.choice(self.attached, mach)?, motion, stall);
-        let mut loads = own(self.stall)?;
-        if self.stall_share != 0.0 && self.stall.is_none() {
-            let terms =
-                [(self.stall_share, own(Some(causes::STALL))?), (1.0 - self.stall_share, loads)];
-            loads = std::array::from_fn(|load| sum(&terms, load));
-        }
+        let stall = match self.stalls_later_rad {
+            Some(later_rad) => Some((causes::STALL, later_rad)),
+            None => self.stall.map(|own| (own, 0.0)),
+        };
+        let mut loads = cycle(&self.choice(self.attached, mach)?, motion, stall)?;
         let more = self.more_unsteady(motion.motion, mach, k)?;
         add(&mut loads, 1, more);
         if self.axis_aft != 0.0 && motion.motion == Motion::Pitch {
@@ -186,26 +184,11 @@ fn add(loads: &mut [HarmonicSeries; 3], n: usize, more: Loads) {
     }
 }
 
-/// The sum of loads, each with a factor.
-fn sum(terms: &[(f64, [HarmonicSeries; 3])], load: usize) -> HarmonicSeries {
-    let mut all = HarmonicSeries::zero(RESOLVED);
-    for (factor, loads) in terms {
-        all.mean += factor * loads[load].mean;
-        for n in 1..=RESOLVED {
-            let (mut own, one) = (all.harmonic(n), loads[load].harmonic(n));
-            own.cosine += factor * one.cosine;
-            own.sine += factor * one.sine;
-            all.set_harmonic(n, own);
-        }
-    }
-    all
-}
-
 /// Loads of one cycle, over the amplitude but for the mean.
 fn cycle(
     section: &SectionChoice,
     motion: &SectionMotion,
-    stall: Option<StallAirfoil>,
+    stall: Option<(StallAirfoil, f64)>,
 ) -> Result<[HarmonicSeries; 3], AeroError> {
     let k = motion.reduced_frequency;
     let Some(amplitude_rad) = motion.amplitude_rad else {
@@ -224,7 +207,8 @@ fn cycle(
         amplitude_rad,
         reduced_frequency: k,
         points: POINTS,
-        stall,
+        stall: stall.map(|own| own.0),
+        stalls_later_rad: stall.map_or(0.0, |own| own.1),
     })?;
     // rows are at 5, 10, ... 360 deg: the last is the first of a cycle
     let last = table.rows.len() - 1;
@@ -297,7 +281,11 @@ pub fn diagnose_section(
         has_flap: measured.motions.iter().any(|own| own.motion == Motion::Flap),
         has_pitch: instruments.len() > 1,
         has_frequency: measured.motions.iter().all(|own| own.frequency_hz.is_some()),
-        highest_deg: measured.motions.iter().map(SectionMotion::highest_deg).fold(0.0, f64::max),
+        highest: measured
+            .motions
+            .iter()
+            .map(|own| (own.highest_deg(), own.mach))
+            .fold((0.0, 0.0), |a, b| if b.0 > a.0 { b } else { a }),
         instruments: &instruments,
     });
     // the calibrated model is fitted to exact linear theory, which no other one here comes nearer to

@@ -48,6 +48,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
             reduced_frequency,
             points,
             stall,
+            stalls_later_rad: 0.0,
         })?,
         ResponseArg::Polar => polar(&PolarQuestion {
             section,
