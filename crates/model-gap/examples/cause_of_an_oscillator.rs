@@ -48,6 +48,7 @@ fn main() -> Result<(), GapError> {
         .map(|(p, (row, frequency))| Point {
             id: format!("{frequency:.1} rad/s"),
             group: p,
+            is_reference: false,
             conditions: vec![*frequency],
             measured: row.iter().map(|v| Some(v + deviation * random.normal())).collect(),
             deviation: vec![deviation; 2],

@@ -45,6 +45,7 @@ pub fn read_table(folder: &Folder) -> Result<TableData, Problems> {
     let point = |p: usize| Point {
         id: read.points.ids[p].clone(),
         group: read.points.groups[p],
+        is_reference: read.points.references[p],
         conditions: read.conditions.iter().map(|(_, values)| values[p]).collect(),
         measured: read.readings.iter().map(|own| own.values[p]).collect(),
         deviation: deviations.iter().map(|own| own[p]).collect(),

@@ -12,6 +12,8 @@ const POINT: &str = "point";
 const GROUP: &str = "group";
 /// Column of numbers of conditions: rows of one number repeat it.
 const REPEAT: &str = "repeat";
+/// Column of 1 for points at which nothing is missing, 0 for the others.
+const REFERENCE: &str = "reference";
 /// Ending of the column of standard deviations of another; it may stand before the unit.
 const DEVIATION: &str = "_sd";
 /// Part of the rms of a column, or of its prediction, that is the least scatter: repeats or a prediction may agree to the last
@@ -25,6 +27,8 @@ pub struct PointData {
     pub ids: Vec<String>,
     /// Number of the sweep of every point, from 0: each alone where none is given, repeats of one condition together.
     pub groups: Vec<usize>,
+    /// Whether a point is a reference: what is looked for does not act there.
+    pub references: Vec<bool>,
     /// The columns of readings and conditions, in the order of the file.
     pub columns: Vec<PointColumn>,
     /// The table they were read from.
@@ -107,7 +111,11 @@ impl PointData {
         let given = numbered(GROUP, &mut problems).or_else(|| repeats.clone());
         let groups = given.map_or_else(|| (0..rows).collect(), |own| places(&own));
         let repeats = repeats.map(|own| places(&own));
-        let is_own = |name: &&str| ![POINT, GROUP, REPEAT].contains(name) && !words.contains(name);
+        let references = numbered(REFERENCE, &mut problems).unwrap_or_else(|| vec![0.0; rows]);
+        let references = flags(&table, &references, &mut problems);
+        let is_own = |name: &&str| {
+            ![POINT, GROUP, REPEAT, REFERENCE].contains(name) && !words.contains(name)
+        };
         let names: Vec<&str> = table.names().filter(is_own).collect();
         let mut columns = Vec::new();
         for name in &names {
@@ -128,7 +136,7 @@ impl PointData {
             };
             columns.push(PointColumn { name: (*name).to_owned(), values, scatter });
         }
-        problems.into_result(Some(Self { ids, groups, columns, table }))
+        problems.into_result(Some(Self { ids, groups, references, columns, table }))
     }
 }
 
@@ -136,6 +144,25 @@ impl PointData {
 fn deviation_names(of: &str) -> Vec<String> {
     let before_unit = of.rsplit_once('_').map(|(stem, unit)| format!("{stem}{DEVIATION}_{unit}"));
     std::iter::once(format!("{of}{DEVIATION}")).chain(before_unit).collect()
+}
+
+/// Which rows are references: one at least is none.
+fn flags(table: &PointCsv, numbers: &[f64], problems: &mut Problems) -> Vec<bool> {
+    let flag = |(row, number): (usize, &f64)| {
+        let is_set = (number - 1.0).abs() < 1e-9;
+        if !is_set && number.abs() > 1e-9 {
+            let message =
+                format!("{number} says nothing: give 1 where nothing is missing, 0 elsewhere");
+            problems.push(table.place(row, REFERENCE), Fault::Other(message));
+        }
+        is_set
+    };
+    let own: Vec<bool> = numbers.iter().enumerate().map(flag).collect();
+    if !own.is_empty() && own.iter().all(|is_set| *is_set) {
+        let message = "every point is a reference: nothing is left to explain; give 0 where something may be missing";
+        problems.push(table.place(0, REFERENCE), Fault::Other(message.to_owned()));
+    }
+    own
 }
 
 /// Places of numbers among those that differ, in their order.
@@ -240,6 +267,9 @@ mod tests {
         assert!(text("fz_N,fz_N_sd\n1,0\n").starts_with("a.csv:2: fz_N_sd: "));
         assert!(text("fz_N,fz_N_sd\n1,0.5\n2,\n").starts_with("a.csv:3: fz_N_sd: "));
         assert!(text("point,fz_N\na,1\na,2\n").contains("twice"));
+        assert!(text("reference,fz_N\n1,1\n2,2\n").starts_with("a.csv:3: reference: "));
+        assert!(text("reference,fz_N\n1,1\n1,2\n").contains("every point is a reference"));
+        assert_eq!(read("reference,fz_N\n1,1\n0,2\n").unwrap().references, [true, false]);
         assert!(text("group,fz_N\n1,1\n,2\n").starts_with("a.csv:3: group: "));
     }
 }

@@ -266,6 +266,19 @@ pub(super) struct Floor {
     sets: Sets,
     /// Smooth error of the simulation by channel, in its unit.
     smooth_error: Vec<f64>,
+    /// What a set with a reference may be off by, by channel and in its unit.
+    at_reference: Vec<f64>,
+}
+
+/// Rms of what the references read less what is simulated there, by channel.
+fn off_at_references(table: &PointTable) -> Vec<f64> {
+    let of = |c: usize| {
+        let all = table.points.iter().zip(&table.predicted).filter(|own| own.0.is_reference);
+        let off: Vec<f64> =
+            all.filter_map(|(point, row)| Some(point.measured[c]? - row[c])).collect();
+        rotor_base::mean_square(&off).sqrt()
+    };
+    (0..table.channels.len()).map(of).collect()
 }
 
 /// Root of the mean square of some channels of a grid.
@@ -290,12 +303,14 @@ impl Floor {
                 row[c] = row[c].hypot(own);
             }
         }
+        let off = off_at_references(table);
         let smooth = |(c, model): (usize, &f64)| {
             let own: Vec<f64> = table.points.iter().map(|point| point.deviation[c]).collect();
-            model.max(SMOOTH * rotor_base::mean_square(&own).sqrt())
+            model.max(SMOOTH * rotor_base::mean_square(&own).sqrt()).max(off[c])
         };
         let smooth_error = level.iter().enumerate().map(smooth).collect();
-        Ok(Self { sigma, model_error, sets, smooth_error })
+        let at_reference = level.iter().zip(&off).map(|(level, off)| level.max(*off)).collect();
+        Ok(Self { sigma, model_error, sets, smooth_error, at_reference })
     }
 
     /// Columns of the nuisance, each as a signal; the inputs that are not known well stand first.
@@ -314,10 +329,16 @@ impl Floor {
             }
         }
         let ModelError { level, change } = &self.model_error;
-        for (own, error) in level.iter().enumerate().filter(|(_, error)| **error > 0.0) {
+        for (own, level) in level.iter().enumerate() {
             for set in self.sets.shared(tables, own) {
+                let mut points = table.points.iter().zip(&self.sets.of_point);
+                let has_reference = points.any(|(p, of)| *of == set && p.is_reference);
+                let error = if has_reference { self.at_reference[own] } else { *level };
+                if error <= 0.0 {
+                    continue;
+                }
                 let is_of = |p: usize, c: usize| c == own && self.sets.of_point[p] == set;
-                columns.push(tables.signal(|p, c| if is_of(p, c) { *error } else { 0.0 }));
+                columns.push(tables.signal(|p, c| if is_of(p, c) { error } else { 0.0 }));
             }
         }
         let means = self.sets.means(base);

@@ -144,6 +144,9 @@ impl Simulator for Tables<'_> {
         }
         let base = &self.table.predicted;
         Ok(self.signal(|p, c| {
+            if self.table.points[p].is_reference {
+                return base[p][c];
+            }
             let added = terms.iter().map(|(factor, grid)| factor * (grid[p][c] - base[p][c]));
             base[p][c] + added.sum::<f64>()
         }))

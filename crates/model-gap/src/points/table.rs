@@ -38,6 +38,8 @@ pub struct Point {
     pub id: String,
     /// Number of the sweep it belongs to: the points of one are held out together.
     pub group: usize,
+    /// Whether no suspect acts there: what is off at such points is off without them.
+    pub is_reference: bool,
     /// Its conditions, in their order.
     pub conditions: Vec<f64>,
     /// What each channel read, in its unit; none where it was not measured.
@@ -188,7 +190,8 @@ impl PointTable {
     /// Parameters of all suspects that move any reading at all.
     pub fn parameters(&self) -> usize {
         let moves = |grid: &Grid| {
-            self.points.iter().zip(grid).zip(&self.predicted).any(|((point, row), base)| {
+            let rows = self.points.iter().zip(grid).zip(&self.predicted);
+            rows.filter(|own| !own.0.0.is_reference).any(|((point, row), base)| {
                 let each = point.measured.iter().zip(&point.deviation).zip(row.iter().zip(base));
                 each.into_iter().any(|((read, deviation), (value, base))| {
                     read.is_some() && (value - base).abs() > LEAST_MOVE * deviation

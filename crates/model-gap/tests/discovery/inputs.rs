@@ -51,6 +51,7 @@ fn asked(truth: Oscillator) -> KindFinding<Oscillator> {
         .map(|(p, (row, frequency))| Point {
             id: format!("{frequency:.2} rad/s"),
             group: p,
+            is_reference: false,
             conditions: vec![*frequency],
             measured: row.iter().map(|v| Some(v + DEVIATION_M * noise(&mut state))).collect(),
             deviation: vec![DEVIATION_M; 2],

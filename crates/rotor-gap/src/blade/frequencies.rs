@@ -17,6 +17,8 @@ const HIGHEST: usize = 12;
 pub struct Frequencies {
     /// Rotor speeds, rpm; one that was measured again is there again.
     pub speeds_rpm: Vec<f64>,
+    /// Whether what is looked for does not act, by speed.
+    pub references: Vec<bool>,
     /// Names of the modes, such as `flap 2`.
     pub modes: Vec<String>,
     /// Frequency, Hz, by speed and mode, with its place among the rows; none where it was not measured.
@@ -47,6 +49,7 @@ impl Frequencies {
         let names = names.ok_or_else(|| refused(MODE, "it is missing".to_owned()))?;
         let mut own = Self {
             speeds_rpm: Vec::new(),
+            references: Vec::new(),
             modes: Vec::new(),
             read: Vec::new(),
             scatter: frequencies.scatter.clone(),
@@ -63,7 +66,7 @@ impl Frequencies {
                 refused(SPEED, format!("row {}: expected a speed of 0 or more", row + 1))
             })?;
             if let Some(value) = frequencies.values[row] {
-                own.add((speed, mode), (row, value));
+                own.add((speed, data.references[row], mode), (row, value));
             }
         }
         if own.speeds_rpm.is_empty() {
@@ -72,7 +75,7 @@ impl Frequencies {
         Ok(own)
     }
 
-    fn add(&mut self, (speed_rpm, mode): (f64, String), value: (usize, f64)) {
+    fn add(&mut self, (speed_rpm, is_reference, mode): (f64, bool, String), value: (usize, f64)) {
         let column = self.modes.iter().position(|own| *own == mode).unwrap_or_else(|| {
             self.modes.push(mode);
             for row in &mut self.read {
@@ -82,10 +85,12 @@ impl Frequencies {
         });
         let is_free = |row: usize| {
             let is_same = self.speeds_rpm[row].to_bits() == speed_rpm.to_bits();
+            let is_same = is_same && self.references[row] == is_reference;
             is_same && self.read[row][column].is_none()
         };
         let row = (0..self.read.len()).find(|&row| is_free(row)).unwrap_or_else(|| {
             self.speeds_rpm.push(speed_rpm);
+            self.references.push(is_reference);
             self.read.push(vec![None; self.modes.len()]);
             self.read.len() - 1
         });
@@ -128,6 +133,7 @@ impl Frequencies {
                 .iter()
                 .position(|own| own.to_bits() == self.speeds_rpm[point].to_bits())
                 .unwrap_or(point),
+            is_reference: self.references[point],
             conditions: vec![self.speeds_rpm[point]],
             measured: row.iter().map(|own| own.map(|own| own.1)).collect(),
             deviation: row.iter().map(|own| own.map_or(usual, |own| deviations[own.0])).collect(),

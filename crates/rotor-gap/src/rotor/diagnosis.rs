@@ -214,6 +214,7 @@ impl<'a> Flights<'a> {
         let point = |(place, &p): (usize, &usize)| Point {
             id: sweep.points[p].id.clone(),
             group: sweep.points[p].group,
+            is_reference: sweep.points[p].is_reference,
             conditions: sweep.conditions.iter().map(|(_, values)| values[p]).collect(),
             measured: sweep.channels.iter().map(|own| own.values[p]).collect(),
             deviation: deviations.iter().map(|own| own[place]).collect(),

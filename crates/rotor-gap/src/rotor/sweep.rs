@@ -37,6 +37,8 @@ pub struct SweepPoint {
     pub id: String,
     /// Number of its sweep.
     pub group: usize,
+    /// Whether what is looked for does not act there.
+    pub is_reference: bool,
     /// Advance ratio.
     pub advance_ratio: f64,
     /// Thrust over solidity, with stated density and rotor speed.
@@ -80,6 +82,7 @@ impl SweepPoint {
         let condition = |own: &Self| Self {
             id: String::new(),
             group: 0,
+            is_reference: false,
             flaps_volt: Vec::new(),
             ..own.clone()
         };
@@ -100,10 +103,11 @@ impl Sweep {
         let mut points: Vec<SweepPoint> = data
             .ids
             .iter()
-            .zip(&data.groups)
-            .map(|(id, group)| SweepPoint {
+            .zip(data.groups.iter().zip(&data.references))
+            .map(|(id, (group, is_reference))| SweepPoint {
                 id: id.clone(),
                 group: *group,
+                is_reference: *is_reference,
                 flaps_volt: vec![Vec::new(); case.flaps.len()],
                 ..SweepPoint::default()
             })

@@ -22,6 +22,8 @@ pub struct SectionMotion {
     pub id: String,
     /// Number of the group it is held out with.
     pub group: usize,
+    /// Whether what is looked for does not act there.
+    pub is_reference: bool,
     /// What moves.
     pub motion: Motion,
     /// Mach number.
@@ -243,6 +245,7 @@ impl SectionLoads {
         let of = |(p, own): (usize, &SectionMotion)| Point {
             id: own.id.clone(),
             group: own.group,
+            is_reference: own.is_reference,
             conditions: vec![own.mach, own.reduced_frequency],
             measured: columns.iter().map(|column| column.0[p]).collect(),
             deviation: columns.iter().map(|column| column.1[p]).collect(),
@@ -271,6 +274,7 @@ fn conditions(data: &PointData, row: usize) -> Result<SectionMotion, RotorGapErr
     Ok(SectionMotion {
         id: String::new(),
         group: 0,
+        is_reference: data.references[row],
         motion: Motion::Pitch,
         mach: needed("mach")?,
         reduced_frequency: needed("reduced_frequency")?,
