@@ -40,7 +40,7 @@ pub use actuator::simulate::{BenchSimulation, Drive, Simulation};
 pub use calibration::Calibration;
 pub use doubts::{Doubt, Weight};
 pub use error::PreisachError;
-pub use inverse::{InverseSettings, PeriodicInverse};
+pub use inverse::{HistoryInverse, HistoryInverseSettings, InverseSettings, PeriodicInverse};
 pub use laws::bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
 pub use laws::dynamics::{
     DynamicMemory, DynamicParameters, DynamicPreisach, OutputHistory, OutputRate, RateForm,
