@@ -10,7 +10,7 @@
 //! | data of the figures of an identification | [`figures`] |
 //! | what an import prints | [`import`] |
 //! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
-//! | actuators: identification from a bench, stored models | [`identification`], [`stored_actuator`], [`actuator`] |
+//! | actuators: identification from a bench, stored models, their use | [`identification`], [`stored_actuator`], [`actuator`], [`actuator_use`] |
 //! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
 //! | two results side by side | [`compare`] |
@@ -18,6 +18,7 @@
 //! | `hhc` | [`cli`] |
 
 pub mod actuator;
+pub mod actuator_use;
 pub mod case;
 pub mod check;
 mod choices;

@@ -35,6 +35,10 @@ pub enum Command {
     Compare(CompareArgs),
     /// Identify an actuator from bench data.
     Identify(IdentifyArgs),
+    /// What an actuator does under the commands of a record.
+    Predict(PredictArgs),
+    /// The voltage under which an actuator moves as wanted, and the error left.
+    Invert(InvertArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
     Diagnose(DiagnoseArgs),
     /// From a linear actuator upwards by data alone: what each step lacks, gains, and is worth to a rotor.
@@ -199,6 +203,40 @@ pub struct IdentifyArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+}
+
+/// `hhc predict`.
+#[derive(Debug, Clone, Args)]
+pub struct PredictArgs {
+    /// Actuator file, from `hhc identify`.
+    #[arg(value_name = "ACTUATOR.ron")]
+    pub actuator: PathBuf,
+    /// Table with `time_s` and `command_V`; with `displacement_um` or `flap_deg` beside, the error is told.
+    #[arg(long, value_name = "RECORD.csv")]
+    pub input: PathBuf,
+    /// Table to write.
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub output: Option<PathBuf>,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+/// `hhc invert`.
+#[derive(Debug, Clone, Args)]
+pub struct InvertArgs {
+    /// Actuator file, from `hhc identify`.
+    #[arg(value_name = "ACTUATOR.ron")]
+    pub actuator: PathBuf,
+    /// Table with `time_s` and `displacement_um` or `flap_deg`: the motion that is wanted.
+    #[arg(long, value_name = "MOTION.csv")]
+    pub wanted: PathBuf,
+    /// Table to write.
+    #[arg(short, long, value_name = "OUT.csv")]
+    pub output: Option<PathBuf>,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }
 
 /// `hhc import`.

@@ -1,19 +1,21 @@
 //! `hhc identify`.
 
-use super::args::IdentifyArgs;
+use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
+use crate::actuator_use::{ActuatorUse, invert as inverted, predict as predicted};
 use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
 use crate::files::{
-    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
+    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, write_atomic,
 };
 use crate::identification::{BenchIdentification, MODELS_COMPARED, identify_bench, identify_loops};
-use crate::output::{Printable, print};
+use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use preisach_dyn::identify::Settings;
+use std::path::{Path, PathBuf};
 
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let base = match &args.start {
@@ -61,6 +63,30 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         write_texts(folder, figures)?;
     }
     print(&text)
+}
+
+pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
+    used(args.output.as_ref(), [&args.actuator, &args.input], args.format, predicted)
+}
+
+pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
+    used(args.output.as_ref(), [&args.actuator, &args.wanted], args.format, inverted)
+}
+
+/// Uses an actuator on a record; writes and prints what it did.
+fn used(
+    output: Option<&PathBuf>,
+    [actuator, record]: [&PathBuf; 2],
+    format: Format,
+    of: fn(&Path, &Path) -> Result<ActuatorUse, SimError>,
+) -> Result<(), SimError> {
+    refuse_inputs(Some(actuator), output)?;
+    refuse_inputs(Some(record), output)?;
+    let own = of(actuator, record)?;
+    if let Some(path) = output {
+        write_atomic(path, own.csv().as_bytes())?;
+    }
+    print(&own.render(format)?)
 }
 
 /// Model file, printed text and tables of the figures.

@@ -63,6 +63,8 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Run(args)) => run::run(args),
         Some(Command::Compare(args)) => compare::compare(args),
         Some(Command::Identify(args)) => identify::identify(args),
+        Some(Command::Predict(args)) => identify::predict(args),
+        Some(Command::Invert(args)) => identify::invert(args),
         Some(Command::Diagnose(args)) => diagnose::diagnose(args),
         Some(Command::Ladder(args)) => diagnose::ladder(args),
         Some(Command::Import(args)) => data::import(args),

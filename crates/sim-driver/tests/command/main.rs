@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod actuator_use;
 mod bad_input;
 mod commands;
 mod compare;

@@ -1,0 +1,72 @@
+//! `hhc predict` and `hhc invert`.
+
+use crate::place::{Place, write_bench};
+
+/// A motion that does not repeat, within reach of the bench.
+fn motion(column: &str, scale: f64) -> String {
+    let rows = (0..400).map(|k| {
+        let t = 0.002 * f64::from(k);
+        let value = scale * (t / 0.1).min(1.0) * ((40.0 * t).sin() + 0.4 * (93.0 * t).sin());
+        format!("{t},{value}\n")
+    });
+    std::iter::once(format!("time_s,{column}\n")).chain(rows).collect()
+}
+
+#[test]
+fn the_voltage_of_a_wanted_motion_moves_the_actuator_so() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    place.hhc(&["identify", "bench", "-o", "a.ron"]).done();
+    place.write("wanted.csv", &motion("displacement_um", 20.0));
+    let args = ["invert", "a.ron", "--wanted", "wanted.csv", "-o", "volts.csv", "--format", "json"];
+    let found = place.hhc(&args).json();
+    assert_eq!(found["at_limit"], 0);
+    let percent = found["error"]["nrmse_percent"].as_f64().unwrap();
+    assert!(percent < 0.1, "{percent}");
+    // forward again, on its own: beside what is wanted, under its name
+    let head = "time_s,command_V,displacement_um,wanted_displacement_um";
+    let volts = place.read("volts.csv");
+    assert!(volts.starts_with(head), "{volts:.80}");
+    let rows = volts.lines().skip(1).map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        format!("{},{},{}\n", cells[0], cells[1], cells[3])
+    });
+    let again: String =
+        std::iter::once("time_s,command_V,displacement_um\n".to_owned()).chain(rows).collect();
+    place.write("again.csv", &again);
+    let predicted =
+        place.hhc(&["predict", "a.ron", "--input", "again.csv", "--format", "json"]).json();
+    let forward = predicted["error"]["nrmse_percent"].as_f64().unwrap();
+    assert!((forward - percent).abs() < 1e-6, "{forward} {percent}");
+    // a voltage in proportion to the motion would not do
+    let flat: String = motion("command_V", 8.0);
+    place.write("flat.csv", &flat);
+    let flat = place.hhc(&["predict", "a.ron", "--input", "flat.csv", "-o", "flat_out.csv"]).done();
+    assert!(!flat.contains("Error"), "{flat}");
+    assert!(place.read("flat_out.csv").starts_with("time_s,command_V,displacement_um\n"));
+}
+
+#[test]
+fn records_that_do_not_serve_are_refused_at_their_place() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    place.hhc(&["identify", "bench", "-o", "a.ron"]).done();
+    place.write("far.csv", &motion("displacement_um", 2000.0));
+    let far = place.hhc(&["invert", "a.ron", "--wanted", "far.csv"]).done();
+    assert!(far.contains("the motion is out of reach"), "{far}");
+    let rejected = |name: &str, text: &str, told: &[&str]| {
+        place.write(name, text);
+        place.hhc(&["predict", "a.ron", "--input", name]).rejected(told);
+    };
+    rejected(
+        "uneven.csv",
+        "time_s,command_V\n0,1\n1,2\n3,3\n",
+        &["uneven.csv:3: time_s", "evenly"],
+    );
+    rejected("one.csv", "time_s,command_V\n0,1\n", &["one.csv:2: time_s", "two or more"]);
+    rejected("none.csv", "time_s,volt\n0,1\n1,2\n", &["none.csv:1", "`command_V` is missing"]);
+    rejected("high.csv", "time_s,command_V\n0,1\n1,2e5\n", &["high.csv", "200000"]);
+    place
+        .hhc(&["predict", "a.ron", "--input", "high.csv", "-o", "high.csv"])
+        .rejected(&["is a file this command reads"]);
+}
