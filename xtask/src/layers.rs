@@ -38,8 +38,9 @@ pub const RESERVED_CRATES: [&str; 10] = [
 ];
 
 /// The members that may use [`RESERVED_CRATES`] in what they ship; tests may use them anywhere.
-pub const RESERVED_FOR: [&str; 9] = [
+pub const RESERVED_FOR: [&str; 10] = [
     "measured-data",
+    "report-page",
     "sim-driver",
     "xtask",
     TRUTH,
