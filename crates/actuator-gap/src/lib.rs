@@ -10,7 +10,7 @@
 //! | the cause library, one file per cause | `causes` |
 //! | the measured runs under effects | `simulator` |
 //! | what other hysteresis families leave with nothing missing | `surrogate` |
-//! | a diagnosis, its findings and the data of its figures | `diagnosis`, `findings`, `figures` |
+//! | a diagnosis, its findings, and the data of its figures | `diagnosis`, `findings`, `shown`, `figures` |
 //! | what to measure next | `next` |
 //! | the extended actuator, and what an actuator file holds | `extended`, `actuator_file` |
 //! | how an identified model fits its records | `judge` |
@@ -34,6 +34,7 @@ mod question;
 mod record;
 mod rungs;
 mod sessions;
+mod shown;
 mod simulator;
 mod surrogate;
 
@@ -47,6 +48,7 @@ pub use question::{Question, Stage, StructureStore};
 pub use record::{Record, Records};
 pub use rungs::{Asked, RungModel, rung_models};
 pub use sessions::GivenModel;
+pub use shown::RunShown;
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

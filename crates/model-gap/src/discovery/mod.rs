@@ -3,6 +3,7 @@
 mod conclude;
 mod decide;
 mod evidence;
+mod fingerprint;
 mod fit;
 mod floors;
 mod gain;
@@ -16,6 +17,7 @@ mod thresholds;
 mod verdict;
 
 pub use crate::trace::{Signal, Simulator, Trace, TraceRole};
+pub use fingerprint::{Fingerprint, Fingerprints, Standing, fingerprints};
 pub use gain::Gain;
 pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
