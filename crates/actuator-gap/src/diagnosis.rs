@@ -91,6 +91,11 @@ impl Diagnosis {
         self.data.accuracy
     }
 
+    /// Unit of the input.
+    pub fn input_unit(&self) -> &str {
+        &self.data.input_unit
+    }
+
     /// Whether the measured outputs move so much more or less than expected that a unit is more likely wrong than a gain.
     pub fn unit_looks_wrong(&self) -> bool {
         !(LIKELY_SCALE[0]..=LIKELY_SCALE[1]).contains(&self.scale)

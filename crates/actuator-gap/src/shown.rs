@@ -2,7 +2,6 @@
 
 use crate::simulator::{BenchSimulator, ChannelKind, averaged};
 use model_gap::discovery::{Finding, Fingerprint, Fingerprints, Trace};
-use rotor_base::mean_square;
 
 /// The output of a run, judged samples alone, thinned as the engine sees it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,13 +25,18 @@ pub struct RunShown {
     pub noise: f64,
     /// Standard deviation that a sample weighs with, in that unit: noise and what the base model leaves with nothing missing.
     pub sigma: f64,
-    /// What each of [`Diagnosis::fingerprints`](crate::Diagnosis::fingerprints) would show in the residual, in that unit.
-    pub effects: Vec<Vec<f64>>,
-    /// What each of them adds to the output, in that unit, root of the mean square.
-    pub added: Vec<f64>,
+    /// What each of [`Diagnosis::fingerprints`](crate::Diagnosis::fingerprints) adds to the output, in that unit, and what of
+    /// it would show in the residual.
+    pub effects: Vec<[Vec<f64>; 2]>,
 }
 
 impl RunShown {
+    /// Measured less simulated in the unit of the outputs, nothing taken off: by the base model (0), or with what was found
+    /// (1).
+    pub fn misfit(&self, which: usize) -> Vec<f64> {
+        self.measured.iter().zip(&self.simulated[which]).map(|(a, b)| a - b).collect()
+    }
+
     /// The outputs among the traces of a simulator.
     pub(crate) fn of(
         simulator: &BenchSimulator<'_>,
@@ -46,8 +50,8 @@ impl RunShown {
             .map(|(number, channel)| {
                 let run = simulator.runs[channel.run];
                 let [before, after] = &shown.predicted;
-                let effect = |own: &Fingerprint| own.shows[number].clone();
-                let added = |own: &Fingerprint| mean_square(&own.adds[number]).sqrt();
+                let effect =
+                    |own: &Fingerprint| [&own.adds, &own.shows].map(|own| own[number].clone());
                 Self {
                     id: run.id.clone(),
                     start_s: run.window.start as f64 * run.step_s,
@@ -60,7 +64,6 @@ impl RunShown {
                     noise: traces[number].noise,
                     sigma: traces[number].sigma,
                     effects: shown.causes.iter().map(effect).collect(),
-                    added: shown.causes.iter().map(added).collect(),
                 }
             })
             .collect()

@@ -28,6 +28,33 @@ impl fmt::Display for Section {
     }
 }
 
+impl Section {
+    /// The table alone, for a page.
+    pub fn table(&self) -> Markup {
+        html! {
+            div.scroll { table {
+                thead { tr { @for head in &self.header { th { (head) } } } }
+                tbody { @for row in &self.rows { tr {
+                    @for (i, cell) in row.iter().enumerate() {
+                        @if i == 0 { th { (cell) } } @else { td { (cell) } }
+                    }
+                } } }
+            } }
+        }
+    }
+
+    /// The table behind its title and its sentence, for a page.
+    pub fn folded(&self) -> Markup {
+        html! {
+            details {
+                summary { (self.title) }
+                @if !self.text.is_empty() { p { (self.text) } }
+                (self.table())
+            }
+        }
+    }
+}
+
 /// For a page.
 impl Render for Section {
     fn render(&self) -> Markup {
@@ -35,14 +62,7 @@ impl Render for Section {
             section {
                 h2 { (self.title) }
                 @if !self.text.is_empty() { p { (self.text) } }
-                div.scroll { table {
-                    thead { tr { @for head in &self.header { th { (head) } } } }
-                    tbody { @for row in &self.rows { tr {
-                        @for (i, cell) in row.iter().enumerate() {
-                            @if i == 0 { th { (cell) } } @else { td { (cell) } }
-                        }
-                    } } }
-                } }
+                (self.table())
             }
         }
     }

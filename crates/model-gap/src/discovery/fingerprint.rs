@@ -1,6 +1,6 @@
 //! What each explanation does to the traces, beside what is left of them.
 
-use super::evidence::{Evidence, difference};
+use super::evidence::{Evidence, difference, residual};
 use super::{Finding, Signal, Simulator, Trace, Verdict};
 use crate::{Candidate, Effect, GapError};
 
@@ -29,8 +29,8 @@ pub struct Fingerprint {
     pub adds: Signal,
     /// The same less what the nuisance explains of it: what a residual, its nuisance taken out, would show of it.
     pub shows: Signal,
-    /// Cosine between that and the residual of the base model, over the weights of the traces: 1 of the same form, 0
-    /// where one tells nothing of the other.
+    /// Cosine between it and the misfit of the base model, the nuisance moved at its cost: 1 of the same form, 0 where one
+    /// tells nothing of the other. Its square is the part of chi-square that it takes off, scaled freely.
     pub likeness: f64,
 }
 
@@ -57,17 +57,19 @@ pub fn fingerprints<S: Simulator>(
 ) -> Result<Fingerprints, GapError> {
     let evidence = Evidence::new(traces)?;
     let plain = simulator.predict(&[])?;
-    let residual = &finding.residual_before;
-    let size = |signal: &Signal| evidence.dot(signal, signal).sqrt();
+    let misfit = residual(traces, &plain);
+    let misfit = evidence.see(&misfit);
+    let chi2 = evidence.inner(&misfit, &misfit);
     let mut causes = Vec::new();
     for (effects, candidate, standing) in explanations(candidates, finding) {
         let others: Vec<Effect> =
             effects.iter().filter(|own| own.candidate != candidate).cloned().collect();
         let without = if others.is_empty() { plain.clone() } else { simulator.predict(&others)? };
         let adds = difference(&simulator.predict(effects)?, &without);
-        let shows = evidence.cleaned(&evidence.see(&adds));
-        let both = size(&shows) * size(residual);
-        let likeness = if both > 0.0 { evidence.dot(&shows, residual) / both } else { 0.0 };
+        let own = evidence.see(&adds);
+        let both = (evidence.inner(&own, &own) * chi2).sqrt();
+        let likeness = if both > 0.0 { evidence.inner(&own, &misfit) / both } else { 0.0 };
+        let shows = evidence.cleaned(&own);
         causes.push(Fingerprint { candidate, standing, adds, shows, likeness });
     }
     let after = simulator.predict(&finding.effects)?;

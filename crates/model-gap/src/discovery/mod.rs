@@ -21,7 +21,7 @@ pub use fingerprint::{Fingerprint, Fingerprints, Standing, fingerprints};
 pub use gain::Gain;
 pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
-pub use screen::Screened;
+pub use screen::{Screened, by_score};
 pub use thresholds::needed_to_separate;
 pub(crate) use thresholds::{AS_LIKELY, SURELY, needed_between};
 pub use verdict::{

@@ -26,6 +26,11 @@ pub struct Reading {
 }
 
 impl Reading {
+    /// Measured less simulated over `sigma`, without what was found and with it, nothing taken off.
+    pub fn misfit(&self) -> [f64; 2] {
+        self.simulated.map(|simulated| (self.measured - simulated) / self.sigma)
+    }
+
     /// Every reading, point by point; `predicted` is over the standard deviations.
     pub(super) fn of(tables: &Tables<'_>, predicted: &[Signal; 2], finding: &Finding) -> Vec<Self> {
         let left = [&finding.residual_before, &finding.residual_after];

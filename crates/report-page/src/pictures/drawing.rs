@@ -30,6 +30,15 @@ impl Drawing {
         );
     }
 
+    /// Adds words at a place, px, that run upwards.
+    pub fn turned_text(&mut self, [x, y]: [f64; 2], class: &str, words: &str) {
+        let _ = writeln!(
+            self.text,
+            "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" class=\"{class}\">{}</text>",
+            escaped(words)
+        );
+    }
+
     /// Adds a rectangle: left upper corner, width and height, px.
     pub fn bar(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], class: &str) {
         let at = format_args!(

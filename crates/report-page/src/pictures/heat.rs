@@ -24,15 +24,15 @@ pub struct HeatMap {
 }
 
 /// Width of a map and of the names of its rows at most, height of a row, px.
-const WIDTH: f64 = 380.0;
-const NAMES: f64 = 104.0;
+const WIDTH: f64 = 400.0;
+const NAMES: f64 = 140.0;
 const ROW: f64 = 18.0;
 /// Width of a cell from which on its value is written in it, px.
 const WRITTEN: f64 = 30.0;
 /// Most columns; more are put together, the largest value of each group shown.
 const MOST_COLUMNS: usize = 90;
 /// Characters of a name of a row, and width of one of a column, px.
-const NAME_LENGTH: usize = 16;
+const NAME_LENGTH: usize = 20;
 const LABEL: f64 = 44.0;
 
 impl HeatMap {
@@ -41,7 +41,7 @@ impl HeatMap {
         let group = self.columns.len().div_ceil(MOST_COLUMNS).max(1);
         let count = self.columns.len().div_ceil(group).max(1);
         let longest = self.rows.iter().map(|own| own.chars().count()).max().unwrap_or(0);
-        let left = (6.2 * longest.min(NAME_LENGTH) as f64 + 8.0).min(NAMES);
+        let left = (6.6 * longest.min(NAME_LENGTH) as f64 + 8.0).min(NAMES);
         let width = (WIDTH - left - 4.0) / count as f64;
         let mut drawing = Drawing::default();
         for (r, (name, values)) in self.rows.iter().zip(&self.values).enumerate() {
@@ -98,7 +98,8 @@ impl HeatMap {
         );
         drawing.element("rect", at, &told);
         if width >= WRITTEN {
-            let text = format!("{value:.1}");
+            // no minus before what rounds to zero
+            let text = format!("{:.1}", if value.abs() < 0.05 { 0.0 } else { value });
             drawing.text([x + 0.5 * width, y + 12.5], "mid", &text);
         }
     }

@@ -1,7 +1,7 @@
 //! Values with their intervals, each on an axis of its own.
 
 use super::drawing::{Drawing, clipped};
-use super::scale::{Scale, short};
+use super::scale::{Scale, resolved, short};
 use maud::{Markup, html};
 
 /// A value with its interval.
@@ -34,7 +34,8 @@ pub fn intervals(all: &[Interval]) -> Markup {
         let y = ROW * k as f64;
         drawing.text([NAMES - 8.0, y + 15.0], "end", &clipped(&own.label, NAME_LENGTH));
         let [low, high] = own.ends;
-        let numbers = format!("{} ({} to {})", short(own.value), short(low), short(high));
+        let [value, from, to] = [own.value, low, high].map(|v| resolved(v, high - low));
+        let numbers = format!("{value} ({from} to {to})");
         drawing.text([WIDTH - NUMBERS + 10.0, y + 15.0], "", &numbers);
         let beside = own.beside.as_ref().map(|beside| beside.0);
         let values = own.ends.into_iter().chain([own.value]).chain(beside);
@@ -82,7 +83,7 @@ mod tests {
         };
         let text = intervals(&[own]).into_string();
         assert!(
-            text.contains("lift: 0.8 (0.7 to 0.9)") && text.contains("as simulated 1"),
+            text.contains("lift: 0.80 (0.70 to 0.90)") && text.contains("as simulated 1"),
             "{text}"
         );
     }

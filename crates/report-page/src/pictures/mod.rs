@@ -13,6 +13,6 @@ mod scale;
 pub use drawing::{Drawing, escaped};
 pub use heat::HeatMap;
 pub use interval::{Interval, intervals};
-pub use panel::{Look, Panel, PointForm, Series, legend, thinned};
+pub use panel::{Look, Panel, PointForm, Series, averaged, legend, thinned};
 pub use rows::{Mark, MarkForm, Row, RowScale, Rows};
 pub use scale::short;

@@ -109,10 +109,7 @@ impl Panel {
         let middle = f64::midpoint(left, right);
         drawing.text([middle, below + 28.0], "soft mid", &self.axes[0]);
         let middle = f64::midpoint(below, above);
-        let turned = format_args!("transform=\"translate(11 {middle:.1}) rotate(-90)\"");
-        drawing.text.push_str(&format!("<g {turned}>"));
-        drawing.text([0.0, 0.0], "soft mid", &self.axes[1]);
-        drawing.text.push_str("</g>\n");
+        drawing.turned_text([11.0, middle], "soft mid", &self.axes[1]);
     }
 }
 
@@ -200,6 +197,15 @@ pub fn thinned(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
     points.chunks(length).flat_map(extremes).collect()
 }
 
+/// A line of many points as one of fewer: the means of consecutive ones, for lines that noise would hide.
+pub fn averaged(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
+    let length = points.len().div_ceil(most.max(1)).max(1);
+    let mean = |part: &[[f64; 2]], axis: usize| {
+        part.iter().map(|own| own[axis]).sum::<f64>() / part.len() as f64
+    };
+    points.chunks(length).map(|part| [mean(part, 0), mean(part, 1)]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,5 +238,7 @@ mod tests {
         assert!(few.len() <= 100 && few.contains(&[777.0, 9.0]), "{}", few.len());
         assert!(few.windows(2).all(|own| own[0][0] < own[1][0]));
         assert_eq!(thinned(&points[..50], 100), points[..50]);
+        let means = averaged(&points, 1000);
+        assert_eq!((means.len(), means[1]), (1000, [4.0, 1.0]));
     }
 }

@@ -50,7 +50,7 @@ pub enum RowScale {
     /// From 0 on.
     #[default]
     Linear,
-    /// Logarithmic from a value above zero on; what is smaller stands at the left end.
+    /// Logarithmic from a value above zero on; what is smaller stands at the left end, a mark of zero nowhere.
     LogFrom(f64),
 }
 
@@ -66,9 +66,9 @@ pub struct Rows {
 }
 
 /// Width of the picture, of the names and of the notes, height of a row, px.
-const WIDTH: f64 = 760.0;
+const WIDTH: f64 = 800.0;
 const NAMES: f64 = 190.0;
-const NOTES: f64 = 96.0;
+const NOTES: f64 = 150.0;
 const ROW: f64 = 20.0;
 /// Characters of a name.
 const NAME_LENGTH: usize = 30;
@@ -92,6 +92,9 @@ impl Rows {
                 .map(f64::from)
                 .take_while(|decade| *decade <= high)
                 .map(|decade| (decade, short(least * 10.0_f64.powf(decade))))
+                .map(|(decade, text)| {
+                    (decade, if decade > 0.0 { text } else { format!("\u{2264} {text}") })
+                })
                 .collect(),
         };
         let mut drawing = Drawing::default();
@@ -106,7 +109,11 @@ impl Rows {
             let class = if row.is_strong { "end strong" } else { "end" };
             drawing.text([NAMES - 6.0, y + 13.0], class, &clipped(&row.label, NAME_LENGTH));
             drawing.text([WIDTH - NOTES + 8.0, y + 13.0], "soft", &row.note);
-            for mark in row.marks.iter().filter(|own| own.value.is_finite()) {
+            let is_drawn = |own: &&Mark| {
+                let is_shown = self.scale == RowScale::Linear || own.form == MarkForm::Bar;
+                own.value.is_finite() && (is_shown || own.value > 0.0)
+            };
+            for mark in row.marks.iter().filter(is_drawn) {
                 mark.draw(&mut drawing, scale.place(scaled(mark.value)), y);
             }
         }

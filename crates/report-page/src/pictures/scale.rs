@@ -52,6 +52,22 @@ impl Scale {
     }
 }
 
+/// A value in as many digits as an interval of a width asks for: two of the width.
+pub(super) fn resolved(value: f64, width: f64) -> String {
+    // the exponent as the language prints it
+    let decade = |value: f64| -> i32 {
+        format!("{value:e}").rsplit('e').next().and_then(|own| own.parse().ok()).unwrap_or(0)
+    };
+    if !(value.is_finite() && width.is_finite() && width > 0.0) {
+        return short(value);
+    }
+    let digits = 1 - decade(width);
+    if !(0..7).contains(&digits) || decade(value) > 5 {
+        return short(value);
+    }
+    format!("{value:.*}", usize::try_from(digits).unwrap_or_default())
+}
+
 /// A number in three digits.
 pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -79,16 +95,24 @@ mod tests {
     #[test]
     fn places_are_straight_and_ticks_are_round() {
         let scale = Scale { low: -2.0, high: 8.0, at: [100.0, 0.0] };
-        assert_eq!([scale.place(-2.0), scale.place(8.0), scale.place(3.0)], [100.0, 0.0, 50.0]);
-        assert_eq!(scale.ticks(), [0.0, 5.0]);
+        let places = [-2.0, 8.0, 3.0].map(|value| short(scale.place(value)));
+        assert_eq!(places, ["100", "0", "50"]);
+        assert_eq!(scale.ticks().len(), 2);
         let ticks = Scale { low: 0.13, high: 0.31, ..scale }.ticks();
         assert_eq!(
             ticks.into_iter().map(short).collect::<Vec<_>>(),
             ["0.15", "0.2", "0.25", "0.3"]
         );
         let one = Scale::of([3.0, f64::NAN], [0.0, 1.0]);
-        assert_eq!((one.low, one.high), (0.0, 6.0));
-        assert_eq!(Scale::of([], [0.0, 1.0]).high, 1.0);
+        assert_eq!([one.low, one.high].map(short), ["0", "6"]);
+        assert_eq!(short(Scale::of([], [0.0, 1.0]).high), "1");
+    }
+
+    #[test]
+    fn an_interval_is_resolved() {
+        assert_eq!(resolved(1.020_14, 0.001), "1.0201");
+        assert_eq!(resolved(0.8, 0.2), "0.80");
+        assert_eq!([resolved(1234.0, 300.0), resolved(2.0, 0.0)], ["1230", "2"]);
     }
 
     #[test]

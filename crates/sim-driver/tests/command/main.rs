@@ -5,6 +5,7 @@
 mod bad_input;
 mod commands;
 mod compare;
+mod diagnosis_page;
 mod disk;
 mod identify;
 mod import;
