@@ -9,8 +9,7 @@ use crate::record::{Record, Records, as_measured, slower};
 use crate::sessions::{
     GivenModel, Sessions, beginning, continued, doubt, range_of, scale_of, simulated_runs,
 };
-use crate::shown::RunShown;
-use crate::simulator::{BenchSimulator, CALIBRATIONS, Setting, inputs_of};
+use crate::simulator::{BenchSimulator, CALIBRATIONS, RunShown, Setting, inputs_of};
 use crate::surrogate;
 use measured_data::Accuracy;
 use model_gap::discovery::{

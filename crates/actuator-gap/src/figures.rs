@@ -2,7 +2,7 @@
 
 use crate::diagnosis::Diagnosis;
 use crate::displays::{Shown, displays};
-use crate::shown::RunShown;
+use crate::simulator::RunShown;
 use std::fmt::Write;
 
 impl Diagnosis {

@@ -1,8 +1,8 @@
 //! The page of the runs of an actuator bench.
 
 use crate::common::{
-    AFTER, BEFORE, MEASURED, RIVAL, after_name, colour_of, costs, diagnosis_page, is_hidden, look,
-    parameters, rms, scale_for, standing_note, taken_off, yardstick,
+    AFTER, BEFORE, MEASURED, RIVAL, after_name, colour_of, costs, diagnosis_page, look, parameters,
+    rms, scale_for, standing_note, yardstick,
 };
 use crate::words::Words;
 use actuator_gap::{Diagnosis, RunShown};
@@ -32,6 +32,9 @@ const PARTS: usize = 24;
 const HARMONICS: usize = 7;
 /// Standard deviations of the full colour: at least, and at most.
 const FULL: [f64; 2] = [2.0, 8.0];
+
+/// Part of chi-square below which what is left hides the misfit.
+const HIDDEN: f64 = 0.1;
 
 /// Values of a run and its residual, in the unit of the outputs; none of a run that has none.
 type RowOf<'a> = dyn Fn(&RunShown, &[f64]) -> Option<Vec<f64>> + 'a;
@@ -379,6 +382,24 @@ impl BenchPage<'_> {
             header: head.into_iter().map(str::to_owned).chain(names).collect(),
             rows: d.shown.iter().map(row).collect(),
         }
+    }
+}
+
+/// Whether what is taken off a misfit hides it, of what each value misses by and what is left of that: calibrations and
+/// errors of the simulation would bear most of its chi-square, far beyond their deviations.
+fn is_hidden(values: impl IntoIterator<Item = (f64, f64)>) -> bool {
+    let sums = values.into_iter().fold([0.0, 0.0], |[chi2, left], (missed, own)| {
+        [missed.mul_add(own, chi2), own.mul_add(own, left)]
+    });
+    sums[1] < HIDDEN * sums[0]
+}
+
+/// What is said of pictures of effects, by whether nothing is taken off, since that would hide the misfit.
+fn taken_off(is_raw: bool) -> &'static str {
+    if is_raw {
+        "Nothing is taken off: calibrations and errors of the simulation could explain it, but far beyond their deviations."
+    } else {
+        "Of both, what is known of the errors of readings and simulation is taken off."
     }
 }
 

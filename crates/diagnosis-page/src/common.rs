@@ -22,9 +22,6 @@ const LIMIT: usize = 4;
 /// Standard deviations up to which a scale is straight.
 const STRAIGHT: f64 = 8.0;
 
-/// Part of chi-square below which what is left hides the misfit.
-const HIDDEN: f64 = 0.1;
-
 /// Most rows of the costs; the rest is in the table of the screening.
 const MOST_COSTS: usize = 16;
 
@@ -70,24 +67,6 @@ pub(super) fn rms(values: impl IntoIterator<Item = f64>) -> f64 {
     let (sum, count) =
         values.into_iter().fold((0.0, 0.0), |(sum, count), v| (v.mul_add(v, sum), count + 1.0));
     if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
-}
-
-/// Whether what is taken off a misfit hides it, of what each value misses by and what is left of that: calibrations and
-/// errors of the simulation would bear most of its chi-square, far beyond their deviations.
-pub(super) fn is_hidden(values: impl IntoIterator<Item = (f64, f64)>) -> bool {
-    let sums = values.into_iter().fold([0.0, 0.0], |[chi2, left], (missed, own)| {
-        [missed.mul_add(own, chi2), own.mul_add(own, left)]
-    });
-    sums[1] < HIDDEN * sums[0]
-}
-
-/// What is said of pictures of effects, by whether nothing is taken off, since that would hide the misfit.
-pub(super) fn taken_off(is_raw: bool) -> &'static str {
-    if is_raw {
-        "Nothing is taken off: calibrations and errors of the simulation could explain it, but far beyond their deviations."
-    } else {
-        "Of both, what is known of the errors of readings and simulation is taken off."
-    }
 }
 
 /// Colour of an explanation.

@@ -1,8 +1,8 @@
 //! The page of points of test.
 
 use crate::common::{
-    AFTER, BEFORE, MEASURED, after_name, colour_of, costs, diagnosis_page, is_hidden, look,
-    parameters, rms, scale_for, standing_note, taken_off, yardstick,
+    AFTER, BEFORE, MEASURED, after_name, colour_of, costs, diagnosis_page, look, parameters, rms,
+    scale_for, standing_note, yardstick,
 };
 use crate::words::Words;
 use maud::{Markup, html};
@@ -288,21 +288,16 @@ impl PointsPage<'_> {
     /// What each explanation does, beside what is to be explained.
     fn fingerprints(&self) -> Markup {
         let found = &self.found;
-        let is_raw = is_hidden(found.readings.iter().map(|own| (own.misfit()[0], own.residual[0])));
-        let other = if is_raw {
-            "The same, what is known of the errors taken off"
-        } else {
-            "The same, nothing taken off"
-        };
         html! {
             section.fingerprints {
                 h2 { "Fingerprints" }
                 @if found.fingerprints.is_empty() { p { "No suspect promised enough to be fitted." } }
                 @else {
-                    p { "The residual to be explained, and what each explanation does as fitted. The right cause looks like "
-                        "the residual. " (taken_off(is_raw)) }
-                    (self.effect_maps(is_raw))
-                    (folded(other, &self.effect_maps(!is_raw)))
+                    p { "What is measured less simulated, and what each explanation adds as fitted. The right cause looks like "
+                        "the first map where its effect is large beside the errors of readings and simulation. The square of "
+                        "the likeness is the part of chi-square that it takes off, scaled freely." }
+                    (self.effect_maps(true))
+                    (folded("The same, what is known of the errors taken off", &self.effect_maps(false)))
                 }
             }
         }

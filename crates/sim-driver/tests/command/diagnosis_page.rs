@@ -15,8 +15,8 @@ pub(crate) fn page(place: &Place, folder: &str) -> String {
         section(&page, name);
     }
     for word in [
-        "http://", "https://", "src=", "<link", "@import", "url(", "<script", "NaN", ">inf",
-        "\"inf",
+        "http://", "https://", "src=", "<link", "@import", "url(", "<script", "NaN", ">inf<",
+        "\"inf\"",
     ] {
         assert!(!page.contains(word), "{word}");
     }

@@ -1,6 +1,6 @@
 //! Measured outputs beside what is simulated of them and what each explanation does to them.
 
-use crate::simulator::{BenchSimulator, ChannelKind, averaged};
+use super::bench::{BenchSimulator, ChannelKind, averaged};
 use model_gap::discovery::{Finding, Fingerprint, Fingerprints, Trace};
 
 /// The output of a run, judged samples alone, thinned as the engine sees it.
