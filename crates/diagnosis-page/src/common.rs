@@ -127,7 +127,10 @@ pub(super) fn parameters(
 /// What each explanation costs: chi-square in the place of each cause, or the screening where nothing has a name.
 pub(super) fn costs(finding: &Finding, candidates: &[Candidate], words: &Words) -> Markup {
     let is_named = !finding.causes.is_empty() && finding.verdict != Verdict::Unknown;
-    let is_untried = candidates.iter().all(|own| own.blocked.is_some());
+    // where none was tried, the reason of most
+    let blocked = || candidates.iter().filter_map(|own| own.blocked.as_ref());
+    let times = |why: &&String| blocked().filter(|other| other == why).count();
+    let untried = blocked().max_by_key(times).filter(|_| blocked().count() == candidates.len());
     html! {
         section.costs {
             h2 { "What each explanation costs" }
@@ -136,7 +139,7 @@ pub(super) fn costs(finding: &Finding, candidates: &[Candidate], words: &Words) 
             } @else {
                 p { "Drop of chi-square that each suspect could bring, scaled freely; the stroke is the floor below which "
                     "there is nothing to name." }
-                @match candidates.iter().find_map(|own| own.blocked.as_ref().filter(|_| is_untried)) {
+                @match untried {
                     Some(why) => { p { "No suspect was tried: " (why) "." } }
                     None => { (screened_bars(finding, candidates)) }
                 }
