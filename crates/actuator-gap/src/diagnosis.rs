@@ -9,11 +9,14 @@ use crate::record::{Record, Records, as_measured, slower};
 use crate::sessions::{
     GivenModel, Sessions, beginning, continued, doubt, range_of, scale_of, simulated_runs,
 };
-use crate::simulator::{BenchSimulator, CALIBRATIONS, ChannelKind, Setting, averaged, inputs_of};
+use crate::simulator::{BenchSimulator, CALIBRATIONS, RunShown, Setting, inputs_of};
 use crate::surrogate;
 use measured_data::Accuracy;
-use model_gap::discovery::{Discovery, Finding, Rival, Settings, Signal, Verdict};
+use model_gap::discovery::{
+    Discovery, Finding, Fingerprint, Rival, Settings, Signal, Trace, Verdict, fingerprints,
+};
 use model_gap::{Candidate, EnergySplit, GapError, places};
+use preisach_dyn::ActuatorModel;
 use rotor_base::variance;
 
 /// A diagnosis with everything it rests on.
@@ -30,8 +33,10 @@ pub struct Diagnosis {
     pub run_ids: Vec<String>,
     /// Names of those with samples interpolated between the measured ones, which are left out.
     pub interpolated: Vec<String>,
-    /// The outputs among the traces.
-    pub(crate) outputs: Vec<OutputTrace>,
+    /// The outputs of the measured runs, of each what is simulated of it.
+    pub shown: Vec<RunShown>,
+    /// The causes found, then their nearest rivals, as they act on the traces.
+    pub fingerprints: Vec<Fingerprint>,
     /// Energy of every measured run.
     pub energy: Vec<RunEnergy>,
     /// Title of the data.
@@ -55,20 +60,6 @@ pub struct Diagnosis {
     pub floor: f64,
     /// Noise of the reading on the reference runs, in the output's unit.
     pub noise: f64,
-}
-
-/// The trace of an output, as a figure shows it.
-pub(crate) struct OutputTrace {
-    /// Its number among the traces.
-    pub(crate) number: usize,
-    /// Name of the run.
-    pub(crate) id: String,
-    /// Time at which what is judged of the run begins, s.
-    pub(crate) start_s: f64,
-    /// Time between samples, s.
-    pub(crate) step_s: f64,
-    /// Input meanwhile, thinned as the residuals are.
-    pub(crate) input: Vec<f64>,
 }
 
 /// Where the energy of a measured run goes under the base model, fractions that sum to 1; of a run at rest, fractions
@@ -97,6 +88,11 @@ impl Diagnosis {
     /// How well the channels are taken to keep their calibration from one session to the next.
     pub fn accuracy(&self) -> Accuracy {
         self.data.accuracy
+    }
+
+    /// Unit of the input.
+    pub fn input_unit(&self) -> &str {
+        &self.data.input_unit
     }
 
     /// Whether the measured outputs move so much more or less than expected that a unit is more likely wrong than a gain.
@@ -151,15 +147,9 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let has_reference = !references.is_empty();
     let given_model =
         question.given.map(|model| GivenModel::beside(model, &references, &runs)).transpose()?;
-    let simulated = match (question.given, given_model) {
-        (Some(model), Some(given)) if !has_reference && !given.is_foreign() => {
-            let mut simulated = simulated_runs(model, &runs)?;
-            let zero = beginning(simulated.iter());
-            for run in &mut simulated {
-                run.lower(zero);
-            }
-            simulated
-        }
+    let ours = question.given.zip(given_model).filter(|(_, own)| !own.is_foreign());
+    let simulated = match ours {
+        Some((model, _)) if !has_reference => simulated_from_zero(model, &runs)?,
         _ => Vec::new(),
     };
     references.extend(&simulated);
@@ -190,7 +180,12 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     let floors = Floors { trends, structures, groups: inputs_of(&runs, range) };
     begin(Stage::Search);
     let settings = Settings { has_reference, ..Settings::default() };
-    let mut finding = search(&simulator, &candidates, &floors, settings, given.as_deref())?;
+    let traces = simulator.traces();
+    let of = (&simulator, &traces[..]);
+    let mut finding = search(of, &candidates, &floors, settings, given.as_deref())?;
+    let fingerprints = fingerprints(&simulator, &traces, &candidates, &finding)?;
+    let shown = RunShown::of(&simulator, &traces, &finding, &fingerprints);
+    let fingerprints = fingerprints.causes;
     let sessions = Sessions {
         runs: &runs,
         references: &references,
@@ -207,7 +202,8 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
         law_inputs: fitted.iter().map(|r| r.input.clone()).collect(),
         run_ids: runs.iter().map(|r| r.id.clone()).collect(),
         interpolated,
-        outputs: outputs(&simulator),
+        shown,
+        fingerprints,
         energy: runs.iter().map(|run| RunEnergy::of(run, &base)).collect(),
         title: measured.title.clone(),
         folder: measured.folder.clone(),
@@ -225,6 +221,19 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     })
 }
 
+/// The runs as a model simulates them, its zero taken off.
+fn simulated_from_zero(
+    model: &ActuatorModel,
+    runs: &[&Record],
+) -> Result<Vec<Record>, DiagnosisError> {
+    let mut simulated = simulated_runs(model, runs)?;
+    let zero = beginning(simulated.iter());
+    for run in &mut simulated {
+        run.lower(zero);
+    }
+    Ok(simulated)
+}
+
 /// What the runs leave with nothing missing, and which of them repeat one input.
 #[derive(Debug, Default)]
 pub(crate) struct Floors {
@@ -233,20 +242,20 @@ pub(crate) struct Floors {
     groups: Vec<usize>,
 }
 
-/// What a search finds in the runs of a simulator; the candidates given are fitted together and not refused.
+/// What a search finds in the runs of a simulator with their traces; the candidates given are fitted together and not refused.
 pub(crate) fn search(
-    simulator: &BenchSimulator<'_>,
+    (simulator, traces): (&BenchSimulator<'_>, &[Trace]),
     candidates: &[Candidate],
     Floors { trends, structures, groups }: &Floors,
     settings: Settings,
     given: Option<&[usize]>,
 ) -> Result<Finding, GapError> {
-    let (traces, spread) = (simulator.traces(), simulator.base.spread);
+    let spread = simulator.base.spread;
     let slower = slower(&simulator.runs);
     let generic = simulator.directions(|input, plain, step_s| {
         surrogate::generic(input, plain, (spread, slower), step_s)
     });
-    let (traces, generic) = (traces.as_slice(), generic.as_slice());
+    let generic = generic.as_slice();
     let discovery = Discovery {
         traces,
         simulator,
@@ -262,24 +271,6 @@ pub(crate) fn search(
         Some(given) => discovery.refit(given),
         None => discovery.find(),
     }
-}
-
-/// The outputs among the traces of a simulator.
-fn outputs(simulator: &BenchSimulator<'_>) -> Vec<OutputTrace> {
-    let traces = simulator.channels.iter().enumerate();
-    traces
-        .filter(|(_, channel)| channel.kind == ChannelKind::Output)
-        .map(|(number, channel)| {
-            let run = simulator.runs[channel.run];
-            OutputTrace {
-                number,
-                id: run.id.clone(),
-                start_s: run.window.start as f64 * run.step_s,
-                step_s: run.step_s * simulator.block as f64,
-                input: averaged(run.judged_input(), simulator.block),
-            }
-        })
-        .collect()
 }
 
 /// Blocks every candidate that is not asked for; the places of those that are.
@@ -342,7 +333,7 @@ mod tests {
     use model_gap::Class;
     use model_gap::Findings;
     use model_gap::discovery::{Confidence, Reason};
-    use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
+    use preisach_dyn::{ActuatorLaw, Calibration, LinearGain, VoltageRange};
 
     /// A line of gain 2.5 on a slow triangle and a sine, times a factor.
     fn runs(is_reference: bool, factor: f64) -> Vec<Record> {

@@ -1,7 +1,8 @@
 //! Data of the figures: residuals before and after, and what they look like.
 
-use crate::diagnosis::{Diagnosis, OutputTrace};
+use crate::diagnosis::Diagnosis;
 use crate::displays::{Shown, displays};
+use crate::simulator::RunShown;
 use std::fmt::Write;
 
 impl Diagnosis {
@@ -10,11 +11,10 @@ impl Diagnosis {
     pub fn figures(&self) -> Vec<(String, String)> {
         let mut tables = Vec::new();
         let mut shown = Vec::new();
-        for OutputTrace { number, id, start_s, step_s, input } in &self.outputs {
+        for own in &self.shown {
+            let RunShown { id, start_s, step_s, input, residual: [before, after], .. } = own;
             let unit = &self.output_unit;
             let mut text = format!("time_s,residual_before_{unit},residual_after_{unit}\n");
-            let before = &self.finding.residual_before[*number];
-            let after = &self.finding.residual_after[*number];
             for (i, (a, b)) in before.iter().zip(after).enumerate() {
                 // writing into a string does not fail
                 let time_s = start_s + i as f64 * step_s;

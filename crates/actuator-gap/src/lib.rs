@@ -8,9 +8,9 @@
 //! | plays and lags, linear in their weights | `plays` |
 //! | the base model with the covariance of its weights | `base` |
 //! | the cause library, one file per cause | `causes` |
-//! | the measured runs under effects | `simulator` |
+//! | the measured runs under effects, and beside what was measured | `simulator` |
 //! | what other hysteresis families leave with nothing missing | `surrogate` |
-//! | a diagnosis, its findings and the data of its figures | `diagnosis`, `findings`, `figures` |
+//! | a diagnosis, its findings, and the data of its figures | `diagnosis`, `findings`, `figures` |
 //! | what to measure next | `next` |
 //! | the extended actuator, and what an actuator file holds | `extended`, `actuator_file` |
 //! | how an identified model fits its records | `judge` |
@@ -47,6 +47,7 @@ pub use question::{Question, Stage, StructureStore};
 pub use record::{Record, Records};
 pub use rungs::{Asked, RungModel, rung_models};
 pub use sessions::GivenModel;
+pub use simulator::RunShown;
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -108,7 +108,8 @@ fn asked_of_line(
     let simulator = BenchSimulator::new(setting, slow.to_vec())?;
     // one cause at a time: a second would mend the form of the first
     let settings = Settings { most_causes: 1, ..Settings::default() };
-    let finding = search(&simulator, &candidates, &Floors::default(), settings, None)?;
+    let finding =
+        search((&simulator, &simulator.traces()), &candidates, &Floors::default(), settings, None)?;
     Ok(Asked {
         verdict: finding.verdict,
         lacks: names(&finding, &candidates),

@@ -2,8 +2,10 @@
 
 mod bench;
 mod response;
+mod shown;
 mod smooth;
 mod traces;
 
-pub(crate) use bench::{BenchSimulator, ChannelKind, Setting, averaged, inputs_of, is_same_input};
+pub(crate) use bench::{BenchSimulator, ChannelKind, Setting, inputs_of, is_same_input};
+pub use shown::RunShown;
 pub(crate) use traces::CALIBRATIONS;

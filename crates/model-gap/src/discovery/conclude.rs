@@ -2,7 +2,7 @@
 
 use super::decide::{Notes, Search};
 use super::fit::Fitted;
-use super::gain::gain;
+use super::held_out::gain;
 use super::judge::drift;
 use super::thresholds::{
     DRIFT_COSTS, DRIFTING, EXPLAINED, GENERIC_SURELY, LEAST_SHARE, LEAST_SHARE_OF_RUNS, STRAINED,

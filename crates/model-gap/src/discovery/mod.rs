@@ -3,9 +3,9 @@
 mod conclude;
 mod decide;
 mod evidence;
+mod fingerprint;
 mod fit;
 mod floors;
-mod gain;
 mod held_out;
 mod intermediate;
 mod judge;
@@ -16,10 +16,11 @@ mod thresholds;
 mod verdict;
 
 pub use crate::trace::{Signal, Simulator, Trace, TraceRole};
-pub use gain::Gain;
+pub use fingerprint::{Fingerprint, Fingerprints, Standing, fingerprints};
+pub use held_out::Gain;
 pub use reason::{BandLeft, OnlyRun, Reason};
 pub use rival::{Rival, Separation, separations};
-pub use screen::Screened;
+pub use screen::{Screened, by_score};
 pub use thresholds::needed_to_separate;
 pub(crate) use thresholds::{AS_LIKELY, SURELY, needed_between};
 pub use verdict::{

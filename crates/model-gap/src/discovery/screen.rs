@@ -28,6 +28,14 @@ pub struct Screened {
     pub most_confused: Option<(usize, f64)>,
 }
 
+/// Candidates, the largest score over its threshold first.
+pub fn by_score(screened: &[Screened]) -> Vec<usize> {
+    let ratio = |c: usize| screened[c].score / screened[c].threshold.max(1e-9);
+    let mut order: Vec<usize> = (0..screened.len()).collect();
+    order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
+    order
+}
+
 /// Of so many starts of an effect that adapts to each experiment, one is tried on every surrogate.
 const ADAPTED_STARTS: usize = 5;
 

@@ -3,9 +3,11 @@
 use super::floor::Floor;
 use super::next::{NextPoints, next_points};
 use super::predicted::Tables;
+use super::shown::{ChannelFloor, Reading};
 use super::table::{PointTable, Suspect, SuspectParameter};
 use crate::discovery::{
-    Confidence, Discovery, Finding, FittedParameter, Found, Reason, Settings, Simulator, Yardstick,
+    Confidence, Discovery, Finding, Fingerprint, FittedParameter, Found, Reason, Settings,
+    Simulator, Yardstick, fingerprints,
 };
 use crate::{Candidate, GapError};
 
@@ -26,6 +28,12 @@ pub struct PointFinding {
     pub gains: Vec<ChannelGain>,
     /// What to measure next; none where nothing is open or no point tells it apart.
     pub next: Option<NextPoints>,
+    /// Every reading with what is simulated of it, point by point.
+    pub readings: Vec<Reading>,
+    /// What the causes found and their nearest rivals do to the readings, in their order, over [`Reading::sigma`].
+    pub fingerprints: Vec<Fingerprint>,
+    /// How large that is beside what is not known of each channel.
+    pub floors: Vec<ChannelFloor>,
 }
 
 /// The error of a channel on points held out.
@@ -125,6 +133,9 @@ impl PointTable {
         let next = next_points(self, &floor, &candidates, &finding)?;
         let gains = self.gains(&tables, &finding);
         let measured = tables.rows.iter().map(|(p, _)| *p).collect();
+        let shown = fingerprints(&tables, &traces, &candidates, &finding)?;
+        let readings = Reading::of(&tables, &shown.predicted, &finding);
+        let floors = ChannelFloor::of((&floor, &tables), &readings, &shown.causes);
         for found in &mut finding.causes {
             self.show(found.candidate, &mut found.parameters);
             self.widen(found);
@@ -132,7 +143,17 @@ impl PointTable {
                 self.show(other.candidate, &mut other.parameters);
             }
         }
-        Ok(PointFinding { finding, candidates, measured, gains, next })
+        let fingerprints = shown.causes;
+        Ok(PointFinding {
+            finding,
+            candidates,
+            measured,
+            gains,
+            next,
+            readings,
+            fingerprints,
+            floors,
+        })
     }
 
     /// A cause that looks like one that was found and was not tried, for no model with it could be read.

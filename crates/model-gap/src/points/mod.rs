@@ -17,6 +17,7 @@ mod kind;
 mod names;
 mod next;
 mod predicted;
+mod shown;
 mod table;
 mod told;
 
@@ -25,6 +26,7 @@ pub use finding::{ChannelGain, PointFinding};
 pub use kind::{KindFinding, KindQuestion, PointKind, WithInputs};
 pub use names::{channels_of, lasting};
 pub use next::NextPoints;
+pub use shown::{ChannelFloor, Reading};
 pub use table::{
     Channel, Grid, Instrument, Part, Point, PointTable, Shown, Suspect, SuspectParameter,
 };

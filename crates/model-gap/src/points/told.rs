@@ -2,6 +2,7 @@
 
 use super::finding::{ChannelGain, PointFinding};
 use super::next::NextPoints;
+use super::shown::Reading;
 use super::table::PointTable;
 use crate::findings::{ChannelGainValue, Findings, Told};
 use std::collections::BTreeMap;
@@ -57,21 +58,15 @@ impl PointFinding {
     pub fn residuals_csv(&self, table: &PointTable) -> String {
         let mut text =
             String::from("point,channel,measured,simulated,sd,residual_sd,residual_after_sd\n");
-        let finding = &self.finding;
-        let pairs = finding.residual_before.iter().zip(&finding.residual_after);
-        for (&p, (before, after)) in self.measured.iter().zip(pairs) {
-            let point = &table.points[p];
-            let read = point.measured.iter().enumerate();
-            let read = read.filter_map(|(c, value)| Some((c, (*value)?)));
-            for ((c, value), (before, after)) in read.zip(before.iter().zip(after)) {
-                let [simulated, deviation] = [table.predicted[p][c], point.deviation[c]];
-                let (id, name) = (&point.id, &table.channels[c].name);
-                // writing to a String cannot fail
-                let _ = writeln!(
-                    text,
-                    "{id},{name},{value},{simulated},{deviation},{before:.4},{after:.4}"
-                );
-            }
+        for own in &self.readings {
+            let (id, name) = (&table.points[own.point].id, &table.channels[own.channel].name);
+            let Reading { measured, deviation, simulated: [simulated, _], .. } = own;
+            let [before, after] = own.residual;
+            // writing to a String cannot fail
+            let _ = writeln!(
+                text,
+                "{id},{name},{measured},{simulated},{deviation},{before:.4},{after:.4}"
+            );
         }
         text
     }

@@ -1,7 +1,7 @@
 //! Anyone's simulator as tables: hub loads and a control over a sweep, with suspects whose effects are known.
 
 use crate::toy::noise;
-use model_gap::discovery::{Confidence, Verdict};
+use model_gap::discovery::{Confidence, Standing, Verdict};
 use model_gap::points::{
     Channel, Grid, Instrument, Part, Point, PointFinding, PointTable, Suspect, SuspectParameter,
 };
@@ -193,6 +193,48 @@ fn what_was_planted_is_named_with_its_amount() {
         }
         assert!(covered >= 17, "{name} {value}: {covered} of 20 intervals");
     }
+}
+
+/// The readings stand beside what is simulated of them, and the fingerprint of a cause is what its fit takes off the residual.
+#[test]
+fn a_fingerprint_is_what_the_fit_takes_off_the_residual() {
+    let sweep = Sweep { possible: vec![(0.2, 1.1)], ..Sweep::default() };
+    let mut table = sweep.table(37, |mu, speed| with("stiffness", 1.04, mu, speed));
+    table.points[3].measured[2] = None;
+    table.alternatives = vec![sweep.grid(|mu, speed| with("drag", 1.02, mu, speed))];
+    let found = table.find().unwrap();
+    assert_eq!(names(&found), ["stiffness"]);
+    assert_eq!(found.readings.len(), 24 * 5 - 1);
+    let shown: Vec<(&str, Standing)> = found
+        .fingerprints
+        .iter()
+        .map(|own| (found.candidates[own.candidate].id, own.standing))
+        .collect();
+    assert_eq!(shown[0], ("stiffness", Standing::Found));
+    assert!(shown[1..].iter().all(|own| own.1 != Standing::Found), "{shown:?}");
+    let own = &found.fingerprints[0];
+    assert!(own.likeness > 0.4, "{}", own.likeness);
+    assert!(found.fingerprints[1..].iter().all(|other| other.likeness < own.likeness));
+    let (adds, shows) = (own.adds.concat(), own.shows.concat());
+    let csv = found.residuals_csv(&table);
+    for (i, (reading, line)) in found.readings.iter().zip(csv.lines().skip(1)).enumerate() {
+        let [before, after] = reading.residual;
+        assert!((before - after - shows[i]).abs() < 1e-9, "{reading:?}, {}", shows[i]);
+        let [plain, with] = reading.simulated;
+        assert!((with - plain - reading.sigma * adds[i]).abs() < 1e-9, "{reading:?}");
+        let (point, channel) = (&table.points[reading.point], &table.channels[reading.channel]);
+        assert_eq!(Some(reading.measured), point.measured[reading.channel]);
+        let start = format!("{},{},{},{plain},", point.id, channel.name, reading.measured);
+        assert!(line.starts_with(&start) && line.ends_with(&format!(",{before:.4},{after:.4}")));
+    }
+    // beside the cause the floor of a channel: the one alternative, 2 % of drag, moves fx by 0.6 mu over 0.3
+    let floor = found.floors.iter().find(|own| own.channel == 2).unwrap();
+    let mu: Vec<f64> =
+        (0..24).filter(|p| *p != 3).map(|p| 0.05 + 0.3 * f64::from(p) / 24.0).collect();
+    let rms = (mu.iter().map(|mu| (2.0 * mu).powi(2)).sum::<f64>() / mu.len() as f64).sqrt();
+    assert!((floor.alternatives / rms - 1.0).abs() < 1e-9, "{floor:?}");
+    let effect = floor.effects[0];
+    assert!(effect[0] > 0.0 && effect[1] > 0.0 && floor.uncertain == 0.0, "{floor:?}");
 }
 
 /// A cause that looks like the one found and whose model could not be read was not tried: it is not excluded.

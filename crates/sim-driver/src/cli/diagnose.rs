@@ -6,9 +6,9 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    CasePoints, Climb, Diagnosis, Findings, FolderStore, PlanText, Planned, PointDiagnosis,
-    PointStory, Question, Record, Records, Specimens, Stage, Story, climb, extended, plan,
-    usual_runs,
+    CasePoints, Climb, Diagnosis, Findings, FolderStore, PAGE_FILE, PlanText, Planned,
+    PointDiagnosis, PointStory, Question, Record, Records, Specimens, Stage, Story, bench_page,
+    climb, extended, plan, usual_runs,
 };
 use crate::files::{
     DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
@@ -84,7 +84,7 @@ fn of_points(
     progress.finish();
     let found = found?;
     write_texts(output, found.files()?)?;
-    for note in &found.notes {
+    for note in &found.diagnosis.notes {
         eprintln!("{note}");
     }
     print(&PointStory::of(&found.diagnosis).render(form)?)
@@ -181,6 +181,7 @@ fn found_in(
     }
     write_texts(output, found.figures())?;
     write_atomic(&output.join("findings.json"), findings.as_bytes())?;
+    write_atomic(&output.join(PAGE_FILE), bench_page(&found).as_bytes())?;
     Ok(found)
 }
 

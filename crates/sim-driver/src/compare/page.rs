@@ -1,9 +1,9 @@
 //! The page of two results side by side.
 
 use super::Comparison;
-use crate::report::{Charts, curve_chart, page, pair_chart};
 use maud::html;
 use plotly::common::Mode;
+use report_page::{Charts, curve_chart, page, pair_chart};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
 use rotor_study::CURVE_AZIMUTHS;
 

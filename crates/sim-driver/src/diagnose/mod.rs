@@ -16,13 +16,16 @@ pub use model_gap::Findings;
 pub use plan_text::PlanText;
 pub use points::{CasePoints, PointDiagnosis, PointStory};
 pub use specimens::{MissingInSome, Specimen, Specimens};
-pub use story::Story;
+pub use story::{Story, bench_page};
 
 use crate::SimError;
 use crate::problem::Place;
 use crate::stored_actuator::StoredActuator;
 use actuator_gap::DiagnosisError;
 use preisach_dyn::ActuatorModel;
+
+/// Name of the page of a diagnosis.
+pub const PAGE_FILE: &str = "report.html";
 
 /// Diagnoses measured runs against the base model of the reference runs.
 ///

@@ -3,9 +3,11 @@
 
 use super::{Diagnosis, Findings};
 use crate::files::significant;
-use crate::output::{Printable, Sheet, table, table_of};
+use crate::output::{Printable, Sheet, table, table_of, unique};
+use diagnosis_page::Words;
 use model_gap::Candidate;
-use model_gap::discovery::{Confidence, Found, Screened, Verdict};
+use model_gap::discovery::{Confidence, Found, Screened, Verdict, by_score};
+use report_page::Section;
 use serde::Serialize;
 
 /// Error of the base model, over the output, from which on the story says that little can be seen beside it.
@@ -31,22 +33,63 @@ impl<'a> Story<'a> {
     }
 }
 
+/// What is said of a diagnosis of a bench.
+fn words(d: &Diagnosis, findings: &Findings) -> Words {
+    Words {
+        title: d.title.clone(),
+        verdict: verdict_line(d, findings),
+        why: told(&|sheet| {
+            causes(d, sheet);
+            seen(findings, sheet);
+        }),
+        gain: told(&|sheet| gain(d, findings, sheet)),
+        next: told(&|sheet| next(d, sheet)),
+        ground: told(&|sheet| base(d, sheet)),
+        ..common_words(findings, (&d.candidates, &d.finding.screen))
+    }
+}
+
+/// What is said of every diagnosis alike.
+pub(super) fn common_words(
+    findings: &Findings,
+    (candidates, screened): (&[Candidate], &[Screened]),
+) -> Words {
+    Words {
+        not_observable: not_observable(findings),
+        screening: Section {
+            title: "Screening of every suspect".to_owned(),
+            text: "Drop of chi-square that each could bring, scaled freely, and the floor below which there is nothing to name."
+                .to_owned(),
+            header: SCREENED.map(str::to_owned).into(),
+            rows: screened_rows(candidates, screened).collect(),
+        },
+        program: format!("rotor-hhc {}", crate::VERSION),
+        ..Words::default()
+    }
+}
+
+/// The lines of a part.
+pub(super) fn told(say: &dyn Fn(&mut Sheet)) -> String {
+    let mut sheet = Sheet::default();
+    say(&mut sheet);
+    sheet.finish()
+}
+
+/// The page of a diagnosis of a bench, as one HTML text that loads nothing.
+pub fn bench_page(diagnosis: &Diagnosis) -> String {
+    diagnosis_page::bench_page(diagnosis, &words(diagnosis, &Findings::from(diagnosis)))
+}
+
 impl Printable for Story<'_> {
     /// The verdict first, then what it rests on.
     fn text(&self) -> String {
-        let Self { findings, diagnosis: d } = self;
-        let mut found = Sheet::default();
-        causes(d, &mut found);
-        seen(findings, &mut found);
-        gain(d, findings, &mut found);
-        next(d, &mut found);
-        let mut ground = Sheet::default();
-        base(d, &mut ground);
+        let Words { verdict, why, gain, next, ground, .. } = words(self.diagnosis, &self.findings);
         let mut screen = Sheet::default();
-        screen.paragraphs(&verdict_line(d, findings));
-        screen.paragraphs(&found.finish());
+        for part in [&verdict, &why, &gain, &next] {
+            screen.paragraphs(part);
+        }
         screen.line("");
-        screen.paragraphs(&ground.finish());
+        screen.paragraphs(&ground);
         screen.line("\nEvery run and every cause: --details");
         screen.screen()
     }
@@ -54,23 +97,20 @@ impl Printable for Story<'_> {
     /// Everything, in the order of the work.
     fn details(&self) -> String {
         let Self { findings, diagnosis: d } = self;
+        let Words { verdict, why, gain, next, ground, .. } = words(d, findings);
         let mut sheet = Sheet::default();
-        base(d, &mut sheet);
+        sheet.block(&ground);
         accuracy(d, &mut sheet);
         energies(d, &mut sheet);
         sheet.line("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach");
         sheet.block(&screening(&d.candidates, &d.finding.screen));
-        sheet.line(format_args!("\n{}", verdict_line(d, findings)));
-        causes(d, &mut sheet);
-        seen(findings, &mut sheet);
-        gain(d, findings, &mut sheet);
-        if !findings.not_observable.is_empty() {
-            sheet.line(format_args!(
-                "Not observable in these data at usual strength: {}",
-                findings.not_observable.join(", ")
-            ));
+        sheet.line(format_args!("\n{verdict}"));
+        sheet.block(&why);
+        sheet.block(&gain);
+        if let Some(own) = not_observable(findings) {
+            sheet.line(own);
         }
-        next(d, &mut sheet);
+        sheet.block(&next);
         sheet.finish()
     }
 }
@@ -174,12 +214,20 @@ fn energies(d: &Diagnosis, sheet: &mut Sheet) {
     ));
 }
 
-/// What each cause could explain, the strongest first.
+/// Heads of the columns of the screening.
+const SCREENED: [&str; 5] = ["cause", "score", "floor", "absorbed %", "most alike"];
+
+/// What each cause could explain, as a table of the terminal.
 pub(super) fn screening(candidates: &[Candidate], screened: &[Screened]) -> String {
-    let ratio = |c: usize| screened[c].score / screened[c].threshold.max(1e-9);
-    let mut order: Vec<usize> = (0..candidates.len()).collect();
-    order.sort_by(|&a, &b| ratio(b).total_cmp(&ratio(a)));
-    let rows = order.iter().map(|&c| {
+    table(&SCREENED, screened_rows(candidates, screened))
+}
+
+/// What each cause could explain, the strongest first.
+fn screened_rows(
+    candidates: &[Candidate],
+    screened: &[Screened],
+) -> impl Iterator<Item = Vec<String>> {
+    by_score(screened).into_iter().map(|c| {
         let (candidate, s) = (&candidates[c], &screened[c]);
         let name = candidate.id;
         if let Some(why) = &candidate.blocked {
@@ -195,8 +243,7 @@ pub(super) fn screening(candidates: &[Candidate], screened: &[Screened]) -> Stri
             .map_or_else(String::new, |(b, cosine)| format!("{} {cosine:+.2}", candidates[b].id));
         let [score, floor] = [s.score, s.threshold].map(|drop| format!("{drop:.0}"));
         vec![format!("{name}{mark}"), score, floor, format!("{:.1}", 100.0 * s.absorbed), alike]
-    });
-    table(&["cause", "score", "floor", "absorbed %", "most alike"], rows)
+    })
 }
 
 /// The causes named, and the reasons of the verdict.
@@ -235,6 +282,13 @@ fn causes(d: &Diagnosis, sheet: &mut Sheet) {
     for reason in &d.finding.reasons {
         sheet.line(format_args!("  {reason}"));
     }
+}
+
+/// Causes that these data cannot show, if there are any.
+fn not_observable(findings: &Findings) -> Option<String> {
+    let names = unique(&findings.not_observable);
+    let names = names.into_iter().map(String::as_str).collect::<Vec<_>>().join(", ");
+    (!names.is_empty()).then(|| format!("Not observable in these data at usual strength: {names}"))
 }
 
 /// Where nothing is missing: what would have been seen.

@@ -1,8 +1,8 @@
 //! What a case assumes, in words and as a table with units.
 
-use super::Section;
 use crate::case::Case;
 use crate::choices::spelt;
+use report_page::Section;
 use rotor_study::case::{Field, Section as CaseSection, Value as FieldValue, Visitor};
 use serde_json::Value;
 

@@ -2,57 +2,33 @@
 
 use super::tables::HISTORY_AZIMUTHS;
 use crate::results::{ControlLine, ControlRecord, LoopRecord, MeasuredLine, SeriesLine, flap_name};
-use plotly::common::{Anchor, DashType, Line, Marker, Mode, Orientation, Title};
-use plotly::layout::{
-    AngularAxis, Axis, BarMode, LayoutPolar, Legend, Margin, PolarDirection, RadialAxis,
-};
-use plotly::{Bar, Layout, Plot, Scatter, Trace};
+use plotly::common::{DashType, Marker, Mode};
+use plotly::layout::{AngularAxis, BarMode, LayoutPolar, PolarDirection, RadialAxis};
+use plotly::{Bar, Plot, Trace};
+use report_page::{COLOURS, chart_axis, chart_layout, chart_line, curve_chart};
 use rotor_base::uniform_azimuths_rad;
 use rotor_study::{DiskLoads, HubLoads, MeasuredData};
 use serde::Serialize;
-
-/// Colours that stay apart from each other and readable on light and dark, also for the colour-blind
-/// (Okabe and Ito's palette).
-const MEASURED: &str = "#8c8c8c";
-const MODEL: &str = "#0e86d4";
-const STATIC: &str = "#d55e00";
-const SERIES: [&str; 5] = ["#8c8c8c", "#0e86d4", "#d55e00", "#009e73", "#cc79a7"];
-
-/// The legend stands below the axis title: the top is left to the zoom buttons.
-fn layout() -> Layout {
-    let legend =
-        Legend::new().orientation(Orientation::Horizontal).x(0.0).y(-0.2).y_anchor(Anchor::Top);
-    Layout::new().margin(Margin::new().left(56).right(16).top(28).bottom(84)).legend(legend)
-}
-
-fn axis(title: &str) -> Axis {
-    Axis::new().title(Title::with_text(title)).auto_margin(true)
-}
-
-fn line(
-    x: &[f64],
-    y: &[f64],
-    name: &str,
-    colour: &'static str,
-    dash: DashType,
-) -> Box<Scatter<f64, f64>> {
-    Scatter::new(x.to_vec(), y.to_vec())
-        .name(name)
-        .mode(Mode::Lines)
-        .line(Line::new().color(colour).width(2.0).dash(dash))
-}
 
 /// Flap angle against voltage: measured, dynamic model, static model.
 pub(super) fn loop_chart(chart: &LoopRecord) -> Plot {
     let mut plot = Plot::new();
     let u = &chart.voltage_volt;
     if !chart.static_deg.is_empty() {
-        plot.add_trace(line(u, &chart.static_deg, "static model", STATIC, DashType::Dot));
+        plot.add_trace(chart_line(u, &chart.static_deg, "static model", COLOURS[2], DashType::Dot));
     }
-    plot.add_trace(line(u, &chart.measured_deg, "measured", MEASURED, DashType::Solid));
-    plot.add_trace(line(u, &chart.simulated_deg, "dynamic model", MODEL, DashType::Dash));
+    plot.add_trace(chart_line(u, &chart.measured_deg, "measured", COLOURS[0], DashType::Solid));
+    plot.add_trace(chart_line(
+        u,
+        &chart.simulated_deg,
+        "dynamic model",
+        COLOURS[1],
+        DashType::Dash,
+    ));
     plot.set_layout(
-        layout().x_axis(axis("voltage, V")).y_axis(axis("flap angle, deg").zero_line(false)),
+        chart_layout()
+            .x_axis(chart_axis("voltage, V"))
+            .y_axis(chart_axis("flap angle, deg").zero_line(false)),
     );
     plot
 }
@@ -63,38 +39,23 @@ pub(super) fn azimuth_chart(record: &ControlRecord) -> Plot {
     let azimuths = uniform_azimuths_rad(HISTORY_AZIMUTHS);
     let psi: Vec<f64> = azimuths.iter().map(|a| a.to_degrees()).collect();
     for (i, flap) in record.end.flaps.iter().enumerate() {
-        let colour = SERIES[1 + i % (SERIES.len() - 1)];
+        let colour = COLOURS[1 + i % (COLOURS.len() - 1)];
         let trace = |series: &SeriesLine| {
             let values: Vec<f64> = azimuths.iter().map(|a| series.0.value(*a)).collect();
-            line(&psi, &values, &flap_name(i), colour, DashType::Solid)
+            chart_line(&psi, &values, &flap_name(i), colour, DashType::Solid)
         };
         plot.add_trace(trace(&flap.voltage_volt));
         plot.add_trace(trace(&flap.flap_deg).y_axis("y2").show_legend(false));
     }
     let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
     plot.set_layout(
-        layout()
-            .x_axis(axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks).anchor("y2"))
-            .y_axis(axis("voltage, V").domain(&[0.54, 1.0]))
-            .y_axis2(axis("flap, deg").domain(&[0.0, 0.46]).anchor("x")),
+        chart_layout()
+            .x_axis(
+                chart_axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks).anchor("y2"),
+            )
+            .y_axis(chart_axis("voltage, V").domain(&[0.54, 1.0]))
+            .y_axis2(chart_axis("flap, deg").domain(&[0.0, 0.46]).anchor("x")),
     );
-    plot
-}
-
-/// A curve to draw: its name, dots or line, azimuths in deg, values.
-pub(crate) type DrawnCurve<'a> = (&'a str, Mode, Vec<f64>, Vec<f64>);
-
-/// Curves against azimuth.
-pub(crate) fn curve_chart(title: &str, curves: Vec<DrawnCurve<'_>>) -> Plot {
-    let mut plot = Plot::new();
-    for (i, (name, mode, psi_deg, values)) in curves.into_iter().enumerate() {
-        let colour = SERIES[i % SERIES.len()];
-        let trace = line(&psi_deg, &values, name, colour, DashType::Solid);
-        plot.add_trace(trace.mode(mode).marker(Marker::new().color(colour)));
-    }
-    let ticks: Vec<f64> = (0..=4).map(|i| 90.0 * f64::from(i)).collect();
-    let azimuth = axis("azimuth, deg").range(vec![0.0, 360.0]).tick_values(ticks);
-    plot.set_layout(layout().x_axis(azimuth).y_axis(axis(title).zero_line(false)));
     plot
 }
 
@@ -109,17 +70,6 @@ pub(super) fn measured_chart(of: &MeasuredLine) -> Plot {
     let computed_deg = azimuths.iter().map(|psi| psi.to_degrees()).collect();
     let computed = ("computed", Mode::Lines, computed_deg, of.computed.clone());
     curve_chart(of.curve.quantity.name(), vec![("measured", mode, psi_deg, values), computed])
-}
-
-/// Named values of two results as grouped bars.
-pub(crate) fn pair_chart(title: &str, heads: &[String], sides: [(&str, Vec<f64>); 2]) -> Plot {
-    let mut plot = Plot::new();
-    for (i, (name, values)) in sides.into_iter().enumerate() {
-        let bars = Bar::new(heads.to_vec(), values).name(name);
-        plot.add_trace(bars.marker(Marker::new().color(SERIES[i])));
-    }
-    plot.set_layout(layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis(title)));
-    plot
 }
 
 /// The six loads as grouped bars: without control, and with each actuator for one set of harmonics.
@@ -142,11 +92,14 @@ pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
             Bar::new(names.clone(), scaled)
                 .name(name)
                 .hover_text_array(hover)
-                .marker(Marker::new().color(SERIES[i % SERIES.len()])),
+                .marker(Marker::new().color(COLOURS[i % COLOURS.len()])),
         );
     }
     plot.set_layout(
-        layout().bar_mode(BarMode::Group).x_axis(axis("")).y_axis(axis("amplitude, 1e-4")),
+        chart_layout()
+            .bar_mode(BarMode::Group)
+            .x_axis(chart_axis(""))
+            .y_axis(chart_axis("amplitude, 1e-4")),
     );
     plot
 }
@@ -204,6 +157,6 @@ pub(super) fn disk_chart(disk: &DiskLoads, values: &[f64], unit: &str) -> Plot {
     let radius = RadialAxis::new().range([0.0, 1.0].map(Into::into));
     let polar =
         LayoutPolar::new().bg_color("rgba(0,0,0,0)").angular_axis(angle).radial_axis(radius);
-    plot.set_layout(layout().polar(polar));
+    plot.set_layout(chart_layout().polar(polar));
     plot
 }

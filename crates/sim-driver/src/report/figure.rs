@@ -3,8 +3,8 @@
 use super::paper::{PaperNumbers, paper_numbers};
 use crate::output::unique;
 use crate::results::{ControlLine, Figures, by_set, set_name};
+use report_page::pictures::{Drawing, escaped};
 use rotor_study::HubLoads;
-use std::fmt::Write as _;
 
 /// The picture that a report opens with, one panel a set of harmonics.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -81,7 +81,7 @@ impl Finding {
         for (k, panel) in self.panels.iter().enumerate() {
             svg.panel(panel, &names, TOP + PANEL * k as f64);
         }
-        let (title, content) = (escaped(title), svg.text);
+        let (title, content) = (escaped(title), svg.drawing.text);
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {height}\" class=\"hf\" role=\"img\" \
              aria-label=\"Hub loads before and after control\">\n\
@@ -102,44 +102,31 @@ fn paper_left(paper: PaperNumbers) -> Vec<f64> {
 /// Colours of text, lines and bars (Okabe and Ito's palette, apart for the colour-blind) on light and dark.
 const STYLE: &str = include_str!("figure.css");
 
-/// A picture that grows.
+/// The picture as it grows.
 #[derive(Default)]
 struct Svg {
-    text: String,
+    drawing: Drawing,
 }
 
 impl Svg {
-    fn push(&mut self, element: std::fmt::Arguments<'_>) {
-        // writing to a string cannot fail
-        let _ = writeln!(self.text, "{element}");
-    }
-
     fn text(&mut self, x: f64, y: f64, class: &str, words: &str) {
-        self.push(format_args!(
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"hf-{class}\">{}</text>",
-            escaped(words)
-        ));
+        self.drawing.text([x, y], &format!("hf-{class}"), words);
     }
 
-    fn bar(&mut self, x: f64, y: f64, width: f64, height: f64, colour: usize) {
-        self.push(format_args!(
-            "<rect x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" class=\"hf-{}\"/>",
-            colour.min(4)
-        ));
+    fn bar(&mut self, x: f64, y: f64, size: [f64; 2], colour: usize) {
+        self.drawing.bar([x, y], size, &format!("hf-{}", colour.min(4)));
     }
 
     /// The mark of the paper's number.
     fn diamond(&mut self, x: f64, y: f64) {
-        self.push(format_args!(
-            "<path d=\"M{x:.1} {:.1}l5 5l-5 5l-5 -5z\" class=\"hf-paper\"/>",
-            y - 5.0
-        ));
+        let path = format_args!("d=\"M{x:.1} {:.1}l5 5l-5 5l-5 -5z\" class=\"hf-paper\"", y - 5.0);
+        self.drawing.element("path", path, "");
     }
 
     fn legend(&mut self, names: &[&str], with_paper: bool) {
         let mut x = LEFT;
         for (k, name) in std::iter::once(&"without control").chain(names).enumerate() {
-            self.bar(x, 35.0, 12.0, 12.0, k);
+            self.bar(x, 35.0, [12.0; 2], k);
             self.text(x + 17.0, 46.0, "soft", name);
             x += 34.0 + 7.0 * name.len() as f64;
         }
@@ -157,22 +144,19 @@ impl Svg {
         self.text(8.0, ground - FULL / 2.0 + 18.0, class, &panel.title);
         let group = (WIDTH - LEFT - 16.0) / 7.0;
         let start = LEFT + 8.0;
-        for (percent, class) in [(0.0, ""), (50.0, ""), (100.0, " class=\"hf-full\"")] {
+        for (percent, class) in [(0.0, ""), (50.0, ""), (100.0, "hf-full")] {
             let y = ground - height(percent);
-            self.push(format_args!(
-                "<line x1=\"{start:.1}\" y1=\"{y:.1}\" x2=\"{:.1}\" y2=\"{y:.1}\"{class}/>",
-                WIDTH - 8.0
-            ));
+            self.drawing.line([start, y], [WIDTH - 8.0, y], class);
         }
         let labels = std::iter::once("J").chain(HubLoads::NAMES);
         let width = (group - 18.0) / (names.len() + 1) as f64;
         for (k, label) in labels.enumerate() {
             let x = start + group * k as f64 + 6.0;
-            self.bar(x, ground - height(100.0), width - 2.0, height(100.0), 0);
+            self.bar(x, ground - height(100.0), [width - 2.0, height(100.0)], 0);
             for (name, left) in &panel.left_percent {
                 let place = names.iter().position(|own| own == name).unwrap_or_default();
                 let (x, tall) = (x + width * (place + 1) as f64, height(left[k]));
-                self.bar(x, ground - tall, width - 2.0, tall, place + 1);
+                self.bar(x, ground - tall, [width - 2.0, tall], place + 1);
                 let (middle, above) = (x + width / 2.0 - 1.0, ground - tall - 4.0);
                 self.text(middle, above, "soft hf-centred", &format!("{:.0}", left[k]));
             }
@@ -185,11 +169,6 @@ impl Svg {
             self.text(middle, below, "soft hf-centred", &label.to_uppercase());
         }
     }
-}
-
-/// Text that cannot end the element it stands in.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Measured against computed: tables, and the numbers as CSV.
 
-use super::Section;
 use crate::results::{Figures, curve_name};
+use report_page::Section;
 use rotor_base::Harmonic;
 use rotor_study::{BandPeak, CurveComparison, LISTED_HARMONICS, VortexComparison};
 use std::fmt::Write as _;

@@ -11,15 +11,14 @@ mod tables;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use charts::{curve_chart, pair_chart};
 pub use figure::Finding;
 pub(crate) use figure::actuator_title;
 pub use measured::measured_csv;
 pub use page::report_html;
-pub(crate) use page::{Charts, page};
 pub(crate) use paper::{is_paper, paper_numbers};
+pub use report_page::Section;
 pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
-pub use tables::{Section, histories_csv, robustness_csv, sensitivity_csv};
+pub use tables::{histories_csv, robustness_csv, sensitivity_csv};
 
 use crate::identification::fit_table;
 use crate::results::{Figures, StoredResult};

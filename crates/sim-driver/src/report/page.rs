@@ -1,12 +1,12 @@
 //! The page around the charts.
 
 use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart, measured_chart};
-use super::{Section, StudyReport, assumptions, state_lines};
+use super::{StudyReport, assumptions, state_lines};
 use crate::results::{BenchPart, by_set, curve_name, set_name};
 use crate::stored_actuator::StoredFit;
-use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
-use plotly::Plot;
+use maud::{Markup, PreEscaped, html};
 use preisach_dyn::identify::RecordUse;
+use report_page::{Charts, Section, page};
 use rotor_study::DiskLoads;
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
@@ -74,7 +74,7 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
                 }
             }
         }
-        @if let Some(disk) = &stored.result.disk { (charts.disk(disk)) }
+        @if let Some(disk) = &stored.result.disk { (disk_maps(&mut charts, disk)) }
         @if !bench.loops.is_empty() {
             section {
                 h2 { "Actuator on the bench: measured against simulated" }
@@ -96,28 +96,6 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
         footer { p { (stored.program) ", result " code { (stored.key) } } }
     };
     page(&stored.case.title, &body, &charts)
-}
-
-/// A whole page around its body.
-pub(crate) fn page(title: &str, body: &Markup, charts: &Charts) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
-                (PreEscaped(plotly_script()))
-            }
-            body {
-                main { (body) }
-                script { (PreEscaped(charts.script())) }
-            }
-        }
-    };
-    page.into_string()
 }
 
 fn fits(fits: &[StoredFit]) -> Section {
@@ -144,20 +122,23 @@ fn fits(fits: &[StoredFit]) -> Section {
     }
 }
 
-impl Render for Section {
-    fn render(&self) -> Markup {
-        html! {
-            section {
-                h2 { (self.title) }
-                @if !self.text.is_empty() { p { (self.text) } }
-                div.scroll { table {
-                    thead { tr { @for head in &self.header { th { (head) } } } }
-                    tbody { @for row in &self.rows { tr {
-                        @for (i, cell) in row.iter().enumerate() {
-                            @if i == 0 { th { (cell) } } @else { td { (cell) } }
-                        }
-                    } } }
-                } }
+/// Section lift and induced velocity over the disk.
+fn disk_maps(charts: &mut Charts, disk: &DiskLoads) -> Markup {
+    let maps = [
+        ("Section lift C_n M^2", &disk.cn_m2, ""),
+        ("Induced velocity, m/s", &disk.induced_m_s, " m/s"),
+    ];
+    html! {
+        section {
+            h2 { "Over the disk" }
+            p { "Flaps at rest. Seen from above, flight up the page: azimuth 0 over the tail is below, 90 deg to "
+                "the right. Lift normal to the chord up positive, induced velocity down positive." }
+            div.grid.wide {
+                @for (title, values, unit) in maps {
+                    @let [low, high] = extremes(values);
+                    @let note = format!("{low:.4} to {high:.4}{unit}");
+                    (charts.figure("chart tall", title, &note, &disk_chart(disk, values, unit)))
+                }
             }
         }
     }
@@ -175,61 +156,3 @@ fn short(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
-
-/// The charts of a page: boxes in the text, their data in one script at its end.
-#[derive(Default)]
-pub(crate) struct Charts {
-    json: Vec<String>,
-}
-
-impl Charts {
-    pub(crate) fn figure(&mut self, class: &str, title: &str, note: &str, plot: &Plot) -> Markup {
-        let id = format!("chart-{}", self.json.len());
-        // a title in the data must not end the script it stands in
-        self.json.push(plot.to_json().replace("</", "<\\/"));
-        html! {
-            figure {
-                figcaption { strong { (title) } @if !note.is_empty() { br; span.note { (note) } } }
-                div class=(class) id=(id) {}
-            }
-        }
-    }
-
-    /// Section lift and induced velocity over the disk.
-    fn disk(&mut self, disk: &DiskLoads) -> Markup {
-        let maps = [
-            ("Section lift C_n M^2", &disk.cn_m2, ""),
-            ("Induced velocity, m/s", &disk.induced_m_s, " m/s"),
-        ];
-        html! {
-            section {
-                h2 { "Over the disk" }
-                p { "Flaps at rest. Seen from above, flight up the page: azimuth 0 over the tail is below, 90 deg to "
-                    "the right. Lift normal to the chord up positive, induced velocity down positive." }
-                div.grid.wide {
-                    @for (title, values, unit) in maps {
-                        @let [low, high] = extremes(values);
-                        @let note = format!("{low:.4} to {high:.4}{unit}");
-                        (self.figure("chart tall", title, &note, &disk_chart(disk, values, unit)))
-                    }
-                }
-            }
-        }
-    }
-
-    fn script(&self) -> String {
-        format!("const charts = [{}];\n{SCRIPT}", self.json.join(",\n"))
-    }
-}
-
-/// The plotting library alone, of the scripts plotly brings.
-fn plotly_script() -> String {
-    let sources = Plot::offline_js_sources();
-    let end = sources.find("</script>").map_or(sources.len(), |i| i + "</script>".len());
-    sources[..end].to_owned()
-}
-
-/// Draws the charts in the colours of the reader's theme, again when it changes.
-const SCRIPT: &str = include_str!("report.js");
-/// The style of the page.
-const STYLE: &str = include_str!("report.css");

@@ -4,10 +4,10 @@
 //! actuator hysteresis phenomenon in helicopter vibration control using dual trailing-edge flaps*,
 //! results and conclusions.
 
-use super::Section;
 use crate::case::{Case, RotorValues};
 use crate::output::unique;
 use crate::results::{ControlLine, Figures};
+use report_page::Section;
 
 /// Advance ratio of every number the paper reports.
 const ADVANCE_RATIO: f64 = 0.30;

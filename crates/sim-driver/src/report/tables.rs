@@ -1,37 +1,14 @@
 //! The tables of a report, and the histories as CSV.
 
-use crate::output::{Sheet, csv_of, table};
+use crate::output::csv_of;
 use crate::results::{ControlRecord, flap_name, set_name};
+use report_page::Section;
 use rotor_base::uniform_azimuths_rad;
 use rotor_study::{RobustnessLine, SensitivityLine, most_moved};
-use std::fmt::{self, Write as _};
+use std::fmt::Write as _;
 
 /// Azimuths of the histories.
 pub(super) const HISTORY_AZIMUTHS: usize = 120;
-
-/// A table with its heading.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Section {
-    /// Heading.
-    pub title: String,
-    /// A sentence or two.
-    pub text: String,
-    /// Column heads.
-    pub header: Vec<String>,
-    /// Rows.
-    pub rows: Vec<Vec<String>>,
-}
-
-/// For the terminal.
-impl fmt::Display for Section {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let header: Vec<&str> = self.header.iter().map(String::as_str).collect();
-        let mut sheet = Sheet::default();
-        sheet.paragraphs(&format!("\n{}. {}", self.title, self.text));
-        sheet.block(&table(&header, self.rows.iter().cloned()));
-        f.write_str(&sheet.finish())
-    }
-}
 
 /// Sets of a single harmonic, which the sensitivities are about.
 fn single(harmonics: &[Vec<usize>]) -> impl Iterator<Item = String> {

@@ -1,5 +1,6 @@
 //! `hhc diagnose` on points of test: tables of anyone's simulator, and sweeps of a rotor.
 
+use crate::diagnosis_page::{costs_least, page, section, shows_residuals};
 use crate::place::Place;
 use std::fmt::Write;
 
@@ -98,8 +99,10 @@ fn folder(truth: Shaker, seed: u64) -> Place {
         one("mass", 1.03, 1.0),
         one("delay", 2e-4, 0.0),
     ];
-    place
-        .write("t/table.ron", &format!("(title: \"a shaker\", effects: [{}])", effects.join(", ")));
+    place.write(
+        "t/table.ron",
+        &format!("(title: \"a shaker <i>\", effects: [{}])", effects.join(", ")),
+    );
     place
 }
 
@@ -127,8 +130,29 @@ fn the_suspect_that_was_planted_is_named_with_its_amount() {
         assert_eq!((gains.len(), &gains[0]["unit"]), (4, &"um".into()));
         let residuals = place.read("out/residuals.csv");
         assert_eq!(residuals.lines().count(), 1 + 26 * 4);
+        let page = page(&place, "out");
+        // what is left before and after, as the file says; what was found costs least
+        shows_residuals(&page, &residuals, 0, 5);
+        shows_residuals(&page, &residuals, 1, 6);
+        costs_least(&page, name);
+        let own = section(&page, "fingerprints");
+        assert!(own.contains(&format!("<strong>{name}</strong><br><span class=\"note\">found")));
+        // two harmonics, each a plane; 26 crosses of what is simulated after
+        let compared = section(&page, "compared");
+        assert_eq!(
+            (compared.matches("<figure>").count(), compared.matches("<path").count()),
+            (2, 53)
+        );
+        assert!(section(&page, "parameters").contains(&format!("{name}: amount: ")));
+        assert!(
+            section(&page, "gain").contains("x1_cos_um") && page.contains("a shaker &lt;i&gt;")
+        );
     }
-    let text = folder(NOMINAL, 7).hhc(&["diagnose", "--table", "t"]).done();
+    let place = folder(NOMINAL, 7);
+    let text = place.hhc(&["diagnose", "--table", "t", "-o", "out"]).done();
+    let page = page(&place, "out");
+    assert!(section(&page, "yardstick").contains("an amount that matters"));
+    assert!(page.find("yardstick").unwrap() < page.find("\"compared").unwrap(), "it comes first");
     assert!(text.starts_with("Nothing is missing (confident)"), "{text}");
     assert!(text.contains("Would have been seen"), "{text}");
 }
@@ -192,6 +216,10 @@ fn a_sweep_of_a_rotor_is_imported_checked_and_diagnosed() {
     assert_eq!(found["data_kind"], "RotorSweep");
     // eight values do not choose between thirty parameters
     assert_eq!(found["causes"], serde_json::json!([]));
+    let page = page(&place, "out");
+    shows_residuals(&page, &place.read("out/residuals.csv"), 0, 5);
+    assert!(section(&page, "costs").contains("No suspect was tried: 8 values"));
+    assert!(section(&page, "ground").contains("rotor.gj"), "what is uncertain is said");
     place.write("bad.csv", &text.replace("fz_n4_cos_N,", "fz_n4_cos_kN,"));
     place.hhc(&["import", "bad.csv", "-o", "bad"]).done();
     place.hhc(&["check", "bad"]).rejected(&["`fz_n4_cos_kN`", "expected one of"]);
@@ -226,6 +254,9 @@ fn frequencies_of_a_blade_are_imported_checked_and_diagnosed() {
     assert_eq!(found["data_kind"], "BladeFrequencies");
     let ratio = found["parameters"]["stiffness-flap"]["ratio"]["value"].as_f64().unwrap();
     assert!((ratio - 0.8).abs() < 0.03, "{told}");
+    let page = page(&place, "out");
+    shows_residuals(&page, &place.read("out/residuals.csv"), 0, 5);
+    costs_least(&page, "stiffness-flap");
     place.write("bad.csv", &text.replace("lag 2", "edge 2"));
     place.hhc(&["import", "bad.csv", "-o", "bad"]).done();
     place.hhc(&["check", "bad"]).rejected(&["bad/points.csv:1", "`edge 2` is no mode"]);
@@ -280,5 +311,9 @@ fn loads_of_a_section_are_imported_checked_and_diagnosed() {
     let found: serde_json::Value = serde_json::from_str(&place.read("out/findings.json")).unwrap();
     let lift = found["parameters"]["flap-effectiveness"]["lift"]["value"].as_f64().unwrap();
     assert!((lift - 0.8).abs() < 0.02, "{told}");
+    let page = page(&place, "out");
+    shows_residuals(&page, &place.read("out/residuals.csv"), 0, 5);
+    costs_least(&page, "flap-effectiveness");
+    assert!(section(&page, "parameters").contains("flap-effectiveness: lift: 0.80"));
     assert!(place.read("out/extended_case.ron").contains("lift"));
 }

@@ -5,6 +5,7 @@ mod everyday;
 mod hidden_effects;
 mod ladder;
 mod metamorphic;
+mod page;
 mod part_truth;
 mod rotor_points;
 mod rotor_truth;

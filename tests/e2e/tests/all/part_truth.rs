@@ -2,6 +2,7 @@
 //! `cargo xtask hidden-effects --kind blade` and `--kind section`.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::page::check_page;
 use measured_data::{DatasetKind, Folder, PointData, Source};
 use model_gap::discovery::{Confidence, Verdict};
 use rotor_gap::blade::{Frequencies, diagnose_blade};
@@ -10,6 +11,7 @@ use rotor_gap::{CaseDiagnosis, CaseQuestion};
 use rotor_truth::asked::Asked;
 use rotor_truth::kind::SetKind;
 use sim_driver::case::read_case;
+use sim_driver::diagnose::{PAGE_FILE, PointDiagnosis};
 
 /// A set, diagnosed as `hhc diagnose` does.
 fn diagnosed(kind: SetKind, seed: u64, effect: &str, size: Option<f64>) -> CaseDiagnosis {
@@ -53,15 +55,35 @@ fn is_sure(own: &CaseDiagnosis) -> bool {
     finding.verdict == Verdict::Named && finding.confidence == Confidence::Confident
 }
 
+/// The page that `hhc diagnose` writes.
+fn page(own: CaseDiagnosis) -> String {
+    let CaseDiagnosis { table, found, .. } = own;
+    let own = PointDiagnosis {
+        title: "a set".into(),
+        data_kind: "made",
+        table,
+        found,
+        besides: vec![],
+        notes: vec![],
+    };
+    let files = own.files().unwrap();
+    files.into_iter().find(|own| own.0 == PAGE_FILE).unwrap().1
+}
+
 /// An engine that is always silent misses the known effects, one that always says the same all but one and the null.
 fn tells_apart(kind: SetKind, known: &[(&str, f64)], outside: (&str, Option<f64>)) {
     let null = diagnosed(kind, 1, "null", None);
     assert!(ids(&null).is_empty(), "null: {:?}", ids(&null));
+    let mut sections =
+        vec!["compared", "residuals", "fingerprints", "floors", "costs", "yardstick"];
+    check_page(&page(null), &sections);
+    sections.push("parameters");
     for (number, (effect, size)) in (2..).zip(known) {
         let own = diagnosed(kind, number, effect, Some(*size));
         assert!(ids(&own).contains(effect), "{effect}: {:?}", ids(&own));
         assert!(!is_sure(&own) || ids(&own) == [*effect], "{effect}: {:?}", ids(&own));
         assert_ne!(own.found.finding.verdict, Verdict::NothingMissing, "{effect}");
+        check_page(&page(own), &sections);
     }
     let (effect, size) = outside;
     let own = diagnosed(kind, 9, effect, size);

@@ -1,6 +1,7 @@
 //! The paper's own lesson, discovered: hub loads made with hysteretic flaps, the simulation with ideal ones.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::page::check_page;
 use measured_data::{PointData, Scatter, Source};
 use model_gap::SplitMix;
 use model_gap::discovery::{Confidence, Verdict};
@@ -11,6 +12,7 @@ use rotor_study::FlapDrive;
 use rotor_study::case::{ActuatorChoice, Case, ModeNumbers, TrimValues, WindTunnelTrim};
 use sim_driver::actuator::case_actuators;
 use sim_driver::case::{PAPER_CASE, shipped_case};
+use sim_driver::diagnose::{PAGE_FILE, PointDiagnosis};
 use std::fmt::Write;
 use std::sync::Arc;
 
@@ -111,6 +113,23 @@ fn hysteresis_that_the_simulation_ignores_is_named_from_hub_loads() {
     let [ideal, ignored, fed_back] = own.won_back[0].reduction_percent;
     assert!(ignored < fed_back - 30.0, "{:?}", own.won_back);
     assert!((fed_back - ideal).abs() < 1.0, "{:?}", own.won_back);
+    let notes = own.notes(&[], "the test");
+    let RotorDiagnosis { table, found: points, .. } = own;
+    let own = PointDiagnosis {
+        title: "hub loads".into(),
+        data_kind: "RotorSweep",
+        table,
+        found: points,
+        besides: vec![],
+        notes,
+    };
+    let page = own.files().unwrap().into_iter().find(|own| own.0 == PAGE_FILE).unwrap().1;
+    check_page(&page, &["compared", "residuals", "fingerprints", "parameters", "floors", "costs"]);
+    assert!(page.contains("actuator-hysteresis: lag_deg, deg: "), "its parameter");
+    // one plane a load and harmonic
+    for plane in ["fx_n4_N", "fz_n4_N", "mx_n4_Nm", "mz_n4_Nm"] {
+        assert!(page.contains(&format!("<strong>{plane}</strong>")), "{plane}");
+    }
     let nothing = found(None, &actuator, 0.01);
     let finding = &nothing.found.finding;
     assert_eq!(finding.verdict, Verdict::NothingMissing, "{:?}", finding.reasons);

@@ -4,12 +4,13 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::page::check_page;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use everyday_bench::text::File;
 use model_gap::discovery::Confidence;
-use sim_driver::diagnose::{Findings, Question, Records, diagnose};
+use sim_driver::diagnose::{Diagnosis, Findings, Question, Records, bench_page, diagnose};
 use sim_driver::files::{Folder, read_bench};
 
 fn folder(name: &str) -> PathBuf {
@@ -20,10 +21,14 @@ fn records(name: &str) -> Records {
     (&read_bench(&Folder::Disk(folder(name))).unwrap()).into()
 }
 
-fn found(name: &str, only: &[&str]) -> Findings {
+fn diagnosed(name: &str, only: &[&str]) -> Diagnosis {
     let only = only.iter().map(|id| (*id).to_owned()).collect();
     let question = Question { reference: records("reference").runs, only, ..Question::default() };
-    Findings::from(&diagnose(&records(name), &question).unwrap())
+    diagnose(&records(name), &question).unwrap()
+}
+
+fn found(name: &str, only: &[&str]) -> Findings {
+    Findings::from(&diagnosed(name, only))
 }
 
 const HIDDEN: [(&str, &str); 3] = [("a", "creep"), ("b", "transport-delay"), ("c", "null")];
@@ -49,7 +54,20 @@ fn they_are_as_the_generator_makes_them() {
 
 #[test]
 fn one_has_a_name_one_a_set_and_one_lacks_nothing() {
-    let [a, b, c] = HIDDEN.map(|(name, _)| serde_json::to_value(found(name, &[])).unwrap());
+    let own = HIDDEN.map(|(name, _)| diagnosed(name, &[]));
+    let [named, ambiguous, nothing] = own.each_ref().map(bench_page);
+    for page in [&named, &ambiguous, &nothing] {
+        check_page(
+            page,
+            &["compared", "residuals", "fingerprints", "floors", "costs", "yardstick"],
+        );
+    }
+    assert!(named.contains("creep: rate_per_decade: 0.0"), "its parameter");
+    assert!(
+        named.contains("<strong>creep, ") && nothing.contains("Nothing is missing (confident)")
+    );
+    assert!(ambiguous.contains("transport-delay: delay, s: 0.000"));
+    let [a, b, c] = own.map(|own| serde_json::to_value(Findings::from(&own)).unwrap());
     assert_eq!([&a["verdict"], &a["confidence"]], ["named", "confident"], "{a}");
     assert_eq!(a["causes"][0], "creep");
     let interval = &a["parameters"]["creep"]["rate_per_decade"]["ci95"];

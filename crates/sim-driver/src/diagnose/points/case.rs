@@ -29,8 +29,6 @@ const SAME_PRESSURES: &str = "cn, cm and ch are taken for integrals of the same 
 pub struct CasePoints {
     /// What was found.
     pub diagnosis: PointDiagnosis,
-    /// What a reader should know.
-    pub notes: Vec<String>,
     /// The case with what was found, as a file holds it; none where nothing of a case was found.
     extended: Option<String>,
 }
@@ -151,8 +149,7 @@ impl Asked<'_> {
         let extended = extended.map_err(|e| SimError::not_written(EXTENDED_CASE_FILE, &e))?;
         let title = self.data.title.clone();
         Ok(CasePoints {
-            diagnosis: PointDiagnosis { title, data_kind, table, found, besides: vec![] },
-            notes,
+            diagnosis: PointDiagnosis { title, data_kind, table, found, besides: vec![], notes },
             extended,
         })
     }

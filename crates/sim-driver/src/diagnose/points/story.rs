@@ -1,10 +1,12 @@
 //! What the terminal and the files say of points of test.
 
 use crate::SimError;
-use crate::diagnose::story::{one_of, screening, sure, valued};
+use crate::diagnose::PAGE_FILE;
+use crate::diagnose::story::{common_words, one_of, screening, sure, told, valued};
 use crate::files::significant;
 use crate::output::{Printable, Sheet, json, table_of, unique};
 use crate::problem::Place;
+use diagnosis_page::{Words, points_page};
 use model_gap::discovery::{Compared, Found, Verdict};
 use model_gap::points::{ChannelGain, PointFinding, PointTable};
 use model_gap::{Findings, GapError, places};
@@ -28,6 +30,8 @@ pub struct PointDiagnosis {
     pub found: PointFinding,
     /// What it means besides, in sentences.
     pub besides: Vec<String>,
+    /// What a reader should know of the inputs and models that it rests on.
+    pub notes: Vec<String>,
 }
 
 impl PointDiagnosis {
@@ -50,7 +54,14 @@ impl PointDiagnosis {
             [] => table.find(),
             given => table.refit(given),
         };
-        Ok(Self { title, data_kind, found: found.map_err(at)?, table, besides: vec![] })
+        Ok(Self {
+            title,
+            data_kind,
+            found: found.map_err(at)?,
+            table,
+            besides: vec![],
+            notes: vec![],
+        })
     }
 
     fn id(&self, candidate: usize) -> &'static str {
@@ -62,14 +73,39 @@ impl PointDiagnosis {
         self.found.findings(&self.table, self.data_kind)
     }
 
-    /// Files to write: findings, and the readings with what is simulated before and after.
+    /// Files to write: findings, the readings with what is simulated before and after, and the page of both.
     ///
     /// # Errors
     /// [`SimError::Data`] if JSON cannot express the findings.
     pub fn files(&self) -> Result<Vec<(String, String)>, SimError> {
-        let residuals = self.found.residuals_csv(&self.table);
-        let findings = json(&self.findings())?;
-        Ok(vec![("findings.json".to_owned(), findings), ("residuals.csv".to_owned(), residuals)])
+        let findings = self.findings();
+        let page = points_page(&self.table, &self.found, &findings, &self.words(&findings));
+        let files = [
+            ("findings.json", json(&findings)?),
+            ("residuals.csv", self.found.residuals_csv(&self.table)),
+            (PAGE_FILE, page),
+        ];
+        Ok(files.map(|(name, text)| (name.to_owned(), text)).into())
+    }
+
+    /// What is said of it.
+    fn words(&self, findings: &Findings) -> Words {
+        let found = &self.found;
+        Words {
+            title: self.title.clone(),
+            verdict: self.verdict(),
+            why: told(&|sheet| {
+                self.causes(sheet);
+                seen(findings, sheet);
+                for own in &self.besides {
+                    sheet.line(format_args!("  {own}"));
+                }
+            }),
+            next: told(&|sheet| self.next(sheet)),
+            ground: told(&|sheet| self.ground(sheet)),
+            notes: self.notes.clone(),
+            ..common_words(findings, (&found.candidates, &found.finding.screen))
+        }
     }
 
     /// The verdict in words.
@@ -251,35 +287,30 @@ impl<'a> PointStory<'a> {
     pub fn of(own: &'a PointDiagnosis) -> Self {
         Self { findings: own.findings(), own }
     }
-
-    fn told(&self, most: usize) -> Sheet {
-        let mut sheet = Sheet::default();
-        self.own.causes(&mut sheet);
-        seen(&self.findings, &mut sheet);
-        for own in &self.own.besides {
-            sheet.line(format_args!("  {own}"));
-        }
-        self.own.gains(most, &mut sheet);
-        self.own.next(&mut sheet);
-        sheet.line("");
-        self.own.ground(&mut sheet);
-        sheet
-    }
 }
 
 impl Printable for PointStory<'_> {
     fn text(&self) -> String {
+        let words = self.own.words(&self.findings);
         let mut screen = Sheet::default();
-        screen.paragraphs(&self.own.verdict());
-        screen.paragraphs(&self.told(SHOWN).finish());
+        screen.paragraphs(&words.verdict);
+        screen.paragraphs(&words.why);
+        self.own.gains(SHOWN, &mut screen);
+        screen.paragraphs(&words.next);
+        screen.line("");
+        screen.paragraphs(&words.ground);
         screen.line("\nEvery suspect and every channel: --details");
         screen.screen()
     }
 
     fn details(&self) -> String {
+        let words = self.own.words(&self.findings);
         let mut sheet = Sheet::default();
-        sheet.line(self.own.verdict());
-        sheet.block(&self.told(usize::MAX).finish());
+        sheet.line(&words.verdict);
+        sheet.block(&words.why);
+        self.own.gains(usize::MAX, &mut sheet);
+        sheet.block(&words.next);
+        sheet.line(format_args!("\n{}", words.ground.trim_end()));
         sheet.line("\nScreening: drop of chi-square that each suspect could bring, and the floor");
         let found = &self.own.found;
         sheet.block(&screening(&found.candidates, &found.finding.screen));

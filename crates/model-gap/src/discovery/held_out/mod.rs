@@ -1,5 +1,10 @@
 //! Experiments predicted by fits that have not seen them.
 
+mod gain;
+
+pub use gain::Gain;
+pub(super) use gain::gain;
+
 use super::evidence::{Evidence, as_calibrated, normal_equations, ridged};
 use super::fit::{Fitted, Fitter, Starts, zero_shift};
 use super::thresholds::{FORETOLD_SHARE, KNOWN_SHARE, MOST_FOLDS, PARAMETER_PENALTY};

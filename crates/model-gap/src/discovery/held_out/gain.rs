@@ -1,10 +1,10 @@
 //! What the extension is worth on data not used for it.
 
-use super::evidence::{Evidence, difference};
-use super::fit::Fitted;
-use super::held_out::{FoldFit, Folds};
-use super::{Signal, Simulator, TraceRole};
+use super::{FoldFit, Folds};
 use crate::GapError;
+use crate::discovery::evidence::{Evidence, difference};
+use crate::discovery::fit::Fitted;
+use crate::discovery::{Signal, Simulator, TraceRole};
 use crate::quantile::student_975;
 use crate::resampling::{NoiseDraw, SplitMix};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ const LEAST_DRAWN: usize = 64;
 const DRAWS: u64 = 40;
 
 /// The gain of causes with both intervals, and the residuals of base and extended model held out; none where nothing can be held out.
-pub(super) fn gain<S: Simulator>(
+pub(in crate::discovery) fn gain<S: Simulator>(
     folds: &Folds<'_, S>,
     evidence: &Evidence<'_>,
     extended: &Fitted,
