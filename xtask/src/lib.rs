@@ -12,6 +12,7 @@
 //! | `hidden-effects` | has the program diagnose synthetic sets with known answers, prints the scores | [`hidden_effects`] |
 //! | `everyday-errors` | the same on benches with the everyday errors of a laboratory | [`everyday_errors`] |
 //! | `hidden-effects --kind rotor`, `blade`, `section` | the same on points of an independent rotor, blade or section | [`point_sets`] |
+//! | `case-studies` | diagnoses measured points, writes figures and numbers of the pages on them | [`case_studies`] |
 //! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
@@ -25,6 +26,7 @@
 
 pub mod bench;
 pub mod calibrate;
+pub mod case_studies;
 pub mod ci;
 pub mod dependencies;
 pub mod diagnosis;

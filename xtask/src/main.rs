@@ -11,8 +11,8 @@ use rotor_truth::kind::SetKind as PointKind;
 use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
-    XtaskError, bench, calibrate, ci, dependencies, dynamic_stall, everyday_errors, files,
-    hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms, tidy,
+    XtaskError, bench, calibrate, case_studies, ci, dependencies, dynamic_stall, everyday_errors,
+    files, hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms, tidy,
     validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
@@ -95,6 +95,8 @@ enum Chore {
     },
     /// Compare dynamic stall with the measured loops of a folder, and write docs/src/dynamic-stall.md
     DynamicStall(Stall),
+    /// Diagnose the measured points of the case studies, and write their figures and numbers
+    CaseStudies(Studies),
     /// Run .ci/run: everything a change must pass
     Ci,
 }
@@ -173,6 +175,18 @@ struct Stall {
     /// Show the page, write nothing
     #[arg(long, conflicts_with = "fit")]
     show: bool,
+}
+
+#[derive(clap::Args)]
+struct Studies {
+    /// Name of a page in docs/src/case-studies; left out, all of them
+    name: Option<String>,
+    /// Only those of seconds
+    #[arg(long, conflicts_with = "name")]
+    quick: bool,
+    /// Write nothing; fail if a page or a figure is not what the program says
+    #[arg(long)]
+    check: bool,
 }
 
 #[derive(clap::Args)]
@@ -324,6 +338,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         Chore::EverydayErrors(options) => everyday(root, options),
         Chore::Bench { quick, only } => speed(root, quick, only),
         Chore::DynamicStall(options) => stall(root, &options),
+        Chore::CaseStudies(Studies { name, quick, check }) => {
+            studies(root, &case_studies::Options { name, quick, check })
+        }
         Chore::Ci => ci::run(root),
     }
 }
@@ -354,6 +371,13 @@ fn validation(root: &Path, options: &Validation) -> Result<ExitCode, XtaskError>
     }
     say(&mut std::io::stdout(), &text);
     Ok(if failed { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+fn studies(root: &Path, options: &case_studies::Options) -> Result<ExitCode, XtaskError> {
+    let stale = case_studies::run(root, options, |line| say(&mut std::io::stdout(), line))?;
+    let lines: Vec<String> = stale.iter().map(|path| format!("stale: {path}\n")).collect();
+    say(&mut std::io::stdout(), &lines.concat());
+    Ok(if stale.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(3) })
 }
 
 fn hidden(

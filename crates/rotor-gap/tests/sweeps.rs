@@ -7,8 +7,9 @@ use model_gap::discovery::Verdict;
 use rotor_base::mean_square;
 use rotor_gap::{RotorDiagnosis, RotorModel, RotorQuestion, Sweep, diagnose, predict};
 use rotor_study::case::{
-    ActuatorChoice, AttachedFlowModel, Case, DissimilarBlade, InflowChoice, ModeNumbers,
-    RotorValues, TrimValues, UncertainField, WindTunnelTrim,
+    ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FlapValues,
+    FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
+    WindTunnelTrim,
 };
 use std::fmt::Write;
 
@@ -207,4 +208,35 @@ fn columns_that_mean_nothing_and_points_that_no_trim_reaches_are_told() {
     let found = found(&sweep);
     assert_eq!((found.aside.len(), found.aside[0].point.as_str()), (1, "5"));
     assert_eq!(found.table.points.len(), 7);
+}
+
+/// What a diverged wake leaves is no rotor in flight: nothing is read of it. Which thrust parts rotor and wake is chance.
+#[test]
+fn a_wake_that_diverges_is_not_flown() {
+    let mut case = simulated();
+    case.advance_ratio = 0.03;
+    case.structure.elements = 4;
+    case.flaps.truncate(1);
+    case.flaps[0] = FlapValues { start_r: 0.7, end_r: 0.8, ..case.flaps[0].clone() };
+    case.aerodynamics.model = AttachedFlowModel::QuasiSteady;
+    case.aerodynamics.compressibility = CompressibilityChoice::None;
+    case.inflow.model = InflowChoice::FreeWake(FreeWakeValues {
+        azimuths: Some(12),
+        turns: Some(3),
+        panels: 10,
+        core_r: 0.01,
+        near_core_r: Some(0.01),
+        mutual_core_r: 0.0,
+        ..FreeWakeValues::default()
+    });
+    let said = [0.12, 0.15, 0.10].map(|ct_sigma| {
+        let text =
+            format!("advance_ratio,ct_sigma,shaft_tilt_deg,theta0_deg\n0.03,{ct_sigma},-30,0\n");
+        let data = PointData::read(&Source { name: "made".into(), text }).unwrap();
+        let sweep = Sweep::of(&data, &case).unwrap();
+        let read = predict(&RotorModel::of(case.clone()), &sweep, None, None);
+        read.map_or_else(|error| error.to_string(), |_| String::new())
+    });
+    let is_told = |own: &String| own.contains("wake and trim found no solution");
+    assert!(said.iter().any(is_told), "{said:?}");
 }

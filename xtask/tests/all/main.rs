@@ -1,5 +1,6 @@
 //! The rules of the house, kept and broken.
 
+mod case_studies;
 mod command;
 mod dependencies;
 mod goldens;

@@ -372,11 +372,11 @@ fn the_tables_of_the_book_are_computed() {
             .unwrap();
         }
     }
-    let page = include_str!("../../../../docs/src/oscillating-flap.md");
+    let page = include_str!("../../../../docs/src/case-studies/oscillating-flap.md");
     let found = tables.iter().all(|table| page.contains(table));
     assert!(
         found,
-        "docs/src/oscillating-flap.md lacks one of these tables:\n{}",
+        "docs/src/case-studies/oscillating-flap.md lacks one of these tables:\n{}",
         tables.join("\n")
     );
 }

@@ -163,6 +163,27 @@ pub enum Reason {
         /// The one that leaves most.
         worst: BandLeft,
     },
+    /// The channels of a point of test show what the causes do not explain.
+    #[error(
+        "the named causes leave {times:.1} times what noise, surrogates and errors of form can leave across the channels of one \
+         point{}",
+        if *.others > 0 { format!(", and more than that {others} times besides") } else { String::new() }
+    )]
+    ChannelsLeft {
+        /// What is left, in amplitude, over what may be.
+        times: f64,
+        /// How often it is more elsewhere.
+        others: usize,
+    },
+    /// Points of test could be explained by an instrument that is further off than it is said to be.
+    #[error(
+        "beside the named causes a gain or a smooth error would have to be {times:.1} times its stated accuracy: check the \
+         calibration, or state a larger error"
+    )]
+    InstrumentOff {
+        /// By how many standard deviations.
+        times: f64,
+    },
     /// A signal that fixes a parameter was not measured.
     #[error("the name is tentative: {signal} was not measured")]
     NotMeasured {
@@ -412,4 +433,23 @@ pub enum Reason {
         /// Its noise over theirs.
         times: f64,
     },
+}
+
+impl Reason {
+    /// The reason in words of points of test, which have neither frequencies nor reference runs.
+    pub(crate) fn of_points(self) -> Self {
+        match self {
+            Self::BandsLeft { bands, worst } => {
+                Self::ChannelsLeft { times: worst.times, others: bands.saturating_sub(1) }
+            }
+            Self::CalibrationOff { times } => Self::InstrumentOff { times },
+            Self::NotAdded { cause, why } => {
+                Self::NotAdded { cause, why: Box::new(why.of_points()) }
+            }
+            Self::Resembles { cause, why } => {
+                Self::Resembles { cause, why: Box::new(why.of_points()) }
+            }
+            other => other,
+        }
+    }
 }

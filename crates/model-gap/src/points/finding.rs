@@ -130,6 +130,13 @@ impl PointTable {
                 finding.reasons.push(reason);
             }
         }
+        if given.is_some() && !finding.causes.is_empty() {
+            finding.confidence = Confidence::Tentative;
+            finding.reasons.push(Reason::TakenForTrue);
+        }
+        finding.reasons = finding.reasons.into_iter().map(Reason::of_points).collect();
+        // a frequency along the channels of a point is none
+        finding.bands_left.clear();
         let next = next_points(self, &floor, &candidates, &finding)?;
         let gains = self.gains(&tables, &finding);
         let measured = tables.rows.iter().map(|(p, _)| *p).collect();

@@ -7,9 +7,11 @@ use crate::discovery::{Found, Verdict};
 use crate::{Effect, GapError, places};
 
 /// Rounds in which the effects of what is left are computed anew where they were found.
-const ROUNDS: usize = 3;
+const ROUNDS: usize = 4;
 /// Part of a value by which it must be off those that its effect was computed at.
 const MOVED: f64 = 0.1;
+/// Part of its first amount by which a parameter moves beside others, to see what it does there.
+const STEP: f64 = 0.02;
 /// Part of the most that any cause explains alone from which on its effect is computed anew, and the most of these.
 const GOOD_PART: f64 = 0.15;
 const SURVIVORS: usize = 8;
@@ -133,7 +135,8 @@ impl<K: PointKind> KindQuestion<'_, K> {
     /// The points with what the simulation says of them, with some of each cause, and with what it is not sure of.
     fn table(&self) -> Result<(PointTable, Vec<&'static str>), K::Error> {
         let begun = self.begun;
-        let uncertain = self.further(&vec![0.0; self.uncertain])?;
+        // an input that is none is refused before anything is simulated
+        self.further(&vec![0.0; self.uncertain])?;
         begun(0, "the simulation at every point");
         let predicted = self.kind.read(self.model)?;
         begun(5, "other levels of fidelity");
@@ -146,7 +149,7 @@ impl<K: PointKind> KindQuestion<'_, K> {
             }
         }
         begun(15, "inputs that are not known well");
-        let uncertain = uncertain.iter().map(|model| self.kind.read(model));
+        let uncertain = (0..self.uncertain).map(|input| self.beside(input, &predicted));
         let uncertain = uncertain.collect::<Result<_, _>>()?;
         let mut suspects = Vec::with_capacity(self.causes.len());
         for (k, cause) in self.causes.iter().enumerate() {
@@ -165,6 +168,23 @@ impl<K: PointKind> KindQuestion<'_, K> {
             knows_deviations: self.knows_deviations,
         };
         Ok((table, names))
+    }
+
+    /// What is read with an input moved by one standard deviation; where that cannot be simulated, as if it did the opposite of
+    /// what it does the other way.
+    fn beside(&self, input: usize, base: &Grid) -> Result<Grid, K::Error> {
+        let moved = |way: f64| {
+            let mut by = vec![0.0; self.uncertain];
+            by[input] = way;
+            self.kind.read(&(self.with_inputs)(&by)?)
+        };
+        moved(1.0).or_else(|error| {
+            let back = moved(-1.0).map_err(|_| error)?;
+            let row = |(back, base): (Vec<f64>, &Vec<f64>)| {
+                back.iter().zip(base).map(|(back, base)| 2.0 * base - back).collect()
+            };
+            Ok(back.into_iter().zip(base).map(row).collect())
+        })
     }
 
     /// A cause as a suspect: what is read with some of it. Amounts that cannot be read are left out; it is blocked where a
@@ -225,18 +245,17 @@ impl<K: PointKind> KindQuestion<'_, K> {
         let mut moved = false;
         for effect in effects {
             let suspect = &mut table.suspects[effect.candidate];
-            moved |= self.recompute(suspect, effect, (model, &table.predicted));
+            moved |= self.recompute(suspect, effect, (model, &table.predicted, &table.points));
         }
         moved
     }
 
-    /// Computes an effect anew at its values, where these are off those it is known at. What its parameters do together beyond
-    /// the sum of each is put to the last of them, so that the sum is right there. False where nothing was computed.
+    /// Computes an effect anew at its values, where these are off those it is known at. False where nothing was computed.
     fn recompute(
         &self,
         suspect: &mut Suspect,
         effect: &Effect,
-        (model, base): (&K::Model, &Grid),
+        (model, base, points): (&K::Model, &Grid, &[Point]),
     ) -> bool {
         let (cause, values) = (&self.causes[effect.candidate], &effect.values);
         let is_off = |(own, &value): (&SuspectParameter, &f64)| {
@@ -255,35 +274,82 @@ impl<K: PointKind> KindQuestion<'_, K> {
         let acting: Vec<usize> = (0..values.len())
             .filter(|&k| !suspect.parameters[k].tables.is_empty() && values[k] - none[k] != 0.0)
             .collect();
-        let alone = |&k: &usize| {
-            let mut own = none.clone();
-            own[k] = values[k];
-            read(&own)
-        };
         // where it cannot be read its effect stays as it was
-        let Some(mut grids) = acting.iter().map(alone).collect::<Option<Vec<Grid>>>() else {
-            return false;
-        };
-        if let ([.., last], [_, _, ..]) = (&mut grids[..], &acting[..])
-            && let Some(together) = read(values)
-        {
-            *last = together;
-            let last = acting.len() - 1;
-            for other in 0..last {
-                let less = grids[other].clone();
-                for ((row, less), base) in grids[last].iter_mut().zip(&less).zip(base) {
-                    for ((value, less), base) in row.iter_mut().zip(less).zip(base) {
-                        *value -= less - base;
-                    }
-                }
-            }
+        let Some(together) = read(values) else { return false };
+        if let [k] = acting[..] {
+            suspect.parameters[k].know((values[k], together));
+            return true;
         }
-        for (&k, grid) in acting.iter().zip(grids) {
-            let tables = &mut suspect.parameters[k].tables;
-            tables.retain(|own| own.0 - values[k] != 0.0);
-            // the first stays the amount that matters
-            tables.push((values[k], grid));
+        let mut near = Vec::new();
+        for &k in &acting {
+            let mut at = values.clone();
+            at[k] += suspect.parameters[k].step(values[k]);
+            let Some(grid) = read(&at) else { return false };
+            near.push((at[k], grid));
+        }
+        let of = |&k: &usize| suspect.parameters[k].read(values[k], base);
+        let mut parts: Vec<Grid> = acting.iter().map(of).collect();
+        // what they do beyond the sum is put to the one that does most: one that hardly moved would turn steep by it
+        let most = largest(&parts, base, points);
+        let mut rest = together.clone();
+        for (_, part) in parts.iter().enumerate().filter(|(k, _)| *k != most) {
+            shift(&mut rest, part, base, -1.0);
+        }
+        parts[most] = rest;
+        for ((&k, part), (at, grid)) in acting.iter().zip(parts).zip(near) {
+            let mut beside = part.clone();
+            shift(&mut beside, &grid, &together, 1.0);
+            let own = &mut suspect.parameters[k];
+            // beside other values of the others it read something else
+            own.tables.truncate(1);
+            own.know((values[k], part));
+            own.know((at, beside));
         }
         true
     }
+}
+
+/// Adds a factor times one grid less another.
+fn shift(grid: &mut Grid, one: &Grid, other: &Grid, factor: f64) {
+    for ((row, one), other) in grid.iter_mut().zip(one).zip(other) {
+        for ((value, one), other) in row.iter_mut().zip(one).zip(other) {
+            *value += factor * (one - other);
+        }
+    }
+}
+
+impl SuspectParameter {
+    /// Takes up what is read at a value; the first table stays the amount that matters.
+    fn know(&mut self, table: (f64, Grid)) {
+        self.tables.retain(|own| own.0 - table.0 != 0.0);
+        self.tables.push(table);
+    }
+
+    /// A small step from a value, inside the range.
+    fn step(&self, value: f64) -> f64 {
+        let size = self.tables.first().map_or(1.0, |table| STEP * (table.0 - self.none).abs());
+        if value + size > self.range.1 { -size } else { size }
+    }
+
+    /// What the tables read at a value.
+    fn read(&self, value: f64, base: &Grid) -> Grid {
+        let mut grid = base.clone();
+        for (factor, table) in self.factors(value).into_iter().zip(&self.tables) {
+            shift(&mut grid, &table.1, base, factor);
+        }
+        grid
+    }
+}
+
+/// Which of some effects is the largest over the deviations of the readings.
+fn largest(grids: &[Grid], base: &Grid, points: &[Point]) -> usize {
+    let size = |grid: &Grid| -> f64 {
+        let rows = grid.iter().zip(base).zip(points);
+        let cells = rows.flat_map(|((row, base), point)| {
+            row.iter().zip(base).zip(&point.deviation).map(|((a, b), sd)| ((a - b) / sd).powi(2))
+        });
+        cells.filter(|own| own.is_finite()).sum()
+    };
+    let sizes: Vec<f64> = grids.iter().map(size).collect();
+    (0..sizes.len()).max_by(|&a, &b| sizes[a].total_cmp(&sizes[b])).unwrap_or_default()
 }

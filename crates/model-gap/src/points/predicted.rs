@@ -13,7 +13,7 @@ impl SuspectParameter {
     /// ```
     /// `x` is the value less that of no effect, `d` what a table adds. Beyond the outermost tables the parabola goes on
     /// straight: nothing is known of its bend there.
-    fn factors(&self, value: f64) -> Vec<f64> {
+    pub(super) fn factors(&self, value: f64) -> Vec<f64> {
         let x = value - self.none;
         let mut factors = vec![0.0; self.tables.len()];
         // places of the tables, that of no effect among them

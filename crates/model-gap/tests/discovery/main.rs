@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod inputs;
+mod joint;
 mod names;
 mod points;
 mod refusals;

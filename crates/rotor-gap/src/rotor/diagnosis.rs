@@ -6,12 +6,12 @@ use crate::rotor::feedback::{WonBack, won_back};
 use crate::rotor::flight::{Actuators, Flown, amplitude};
 use crate::rotor::model::RotorModel;
 use crate::rotor::spread::{alternatives, moved_inputs, stated, with_inputs};
-use crate::rotor::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint};
+use crate::rotor::sweep::{ASIDE, Aside, Sweep, SweepChannel, SweepPoint, instrumented};
 use measured_data::Scatter;
 use model_gap::discovery::Verdict;
 use model_gap::points::{
     Channel, Grid, Instrument, KindFinding, KindQuestion, Point, PointFinding, PointKind,
-    PointTable, channels_of,
+    PointTable,
 };
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
@@ -187,8 +187,7 @@ impl<'a> Flights<'a> {
             let first = aside.first().map(|own| own.reason.clone()).unwrap_or_default();
             return Err(RotorGapError::NoPoint { first });
         }
-        let names: Vec<&str> = sweep.channels.iter().map(|own| own.name.as_str()).collect();
-        let (named, instruments) = channels_of(&names);
+        let (named, instruments) = instrumented(&sweep.channels);
         Ok((Self { question, model, actuators, points, flown, named, instruments }, aside))
     }
 

@@ -3,14 +3,16 @@
 use crate::error::RotorGapError;
 use crate::rotor::columns::{Load, PartOf, Reading};
 use crate::rotor::model::{RotorModel, later};
-use crate::rotor::sweep::{Sweep, SweepChannel, SweepPoint};
-use model_gap::points::{Channel, Grid, channels_of};
+use crate::rotor::sweep::{Sweep, SweepChannel, SweepPoint, instrumented};
+use model_gap::points::{Channel, Grid};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
 use rotor_response::RotorSolution;
 use rotor_study::case::{Case, PitchHarmonic, TrimValues};
-use rotor_study::{FlapDrive, PlantError, StudyError, TrimmedRotor, scaled};
+use rotor_study::{
+    FlapDrive, PlantError, StudyError, TrimmedRotor, WakeStatus, scaled, wake_status,
+};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -18,6 +20,8 @@ use std::sync::Arc;
 const TRIM_TOLERANCE: f64 = 1e-6;
 const PERIODICITY_TOLERANCE: f64 = 1e-8;
 const INFLOW_TOLERANCE: f64 = 1e-7;
+/// Why a rotor is not flown.
+const NO_SOLUTION: &str = "wake and trim found no solution; `hhc run` says why and what may help";
 /// Azimuths of airloads and tip motion.
 const AZIMUTHS: usize = 72;
 /// Lift slope that the Lock number of a case is defined with.
@@ -184,6 +188,11 @@ impl RotorModel {
             Some(near) => TrimmedRotor::near(&case, &near.rotor)?,
             None => TrimmedRotor::new(&case, None)?,
         };
+        // the state that a diverged wake leaves is no rotor in flight: what differs there is no effect
+        if rotor.wake().is_some_and(|wake| wake_status(wake) == WakeStatus::Diverged) {
+            let (field, message) = ("inflow.model".to_owned(), NO_SOLUTION.to_owned());
+            return Err(StudyError::Refused { field, message });
+        }
         Ok(Trimmed { case, rotor })
     }
 
@@ -355,8 +364,7 @@ pub fn predict(
         move |source| RotorGapError::Study { point, source: Box::new(source) }
     };
     let actuators = Actuators::of(&model.case, actuator, hysteretic).map_err(at("-"))?;
-    let names: Vec<&str> = sweep.channels.iter().map(|own| own.name.as_str()).collect();
-    let (named, instruments) = channels_of(&names);
+    let (named, instruments) = instrumented(&sweep.channels);
     let points: Vec<&SweepPoint> = sweep.points.iter().collect();
     let flown = model.fly(&points, &actuators, None);
     let read = |(point, own): (&SweepPoint, Result<Flown, StudyError>)| {

@@ -1,8 +1,9 @@
 //! What a sweep measured.
 
 use crate::error::RotorGapError;
-use crate::rotor::columns::{Column, PartOf, Reading, Setting};
+use crate::rotor::columns::{Column, Load, PartOf, Reading, Setting};
 use measured_data::{PointColumn, PointData, Scatter};
+use model_gap::points::{Channel, channels_of};
 use rotor_base::Harmonic;
 use rotor_study::case::{Case, TrimValues};
 
@@ -28,6 +29,30 @@ pub struct SweepChannel {
     pub values: Vec<Option<f64>>,
     /// How sure they are.
     pub scatter: Scatter,
+}
+
+/// The channels for the engine, and the names of their instruments. Airloads of a section are integrals of the same pressures,
+/// motions of the tip are read by the same targets: all their harmonics have one gain.
+pub(super) fn instrumented(channels: &[SweepChannel]) -> (Vec<Channel>, Vec<String>) {
+    let names: Vec<&str> = channels.iter().map(|own| own.name.as_str()).collect();
+    let (mut named, of_harmonics) = channels_of(&names);
+    let mut instruments: Vec<String> = Vec::new();
+    for (own, channel) in named.iter_mut().zip(channels) {
+        let what = channel.name.rsplit_once("_n").map_or("", |own| own.0);
+        let name = match channel.reading {
+            Reading::Harmonic { of: Load::Airload { .. }, .. } => {
+                format!("airloads{}", what.trim_start_matches("cn_m2").trim_start_matches("cm_m2"))
+            }
+            Reading::Harmonic { of: Load::TipTwistDeg | Load::TipFlap, .. } => what.to_owned(),
+            _ => of_harmonics[own.instrument].clone(),
+        };
+        let known = instruments.iter().position(|own| *own == name);
+        own.instrument = known.unwrap_or_else(|| {
+            instruments.push(name);
+            instruments.len() - 1
+        });
+    }
+    (named, instruments)
 }
 
 /// One point of test.
@@ -213,5 +238,37 @@ impl SweepPoint {
                 set_part(&mut self.root_pitch_deg, harmonic, part, value);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn airloads_of_a_section_have_one_gain_and_hub_loads_one_for_each_harmonic() {
+        let of = |name: &&str| {
+            let Ok(Column::Reads(reading)) = Column::parse(name) else { panic!("{name}") };
+            let (values, scatter) = (vec![], Scatter::Unknown);
+            SweepChannel { name: (*name).to_owned(), reading, values, scatter }
+        };
+        let names = [
+            "cn_m2_r0p87_n0",
+            "cn_m2_r0p87_n1_cos",
+            "cn_m2_r0p87_n1_sin",
+            "cm_m2_r0p87_n2_cos",
+            "cn_m2_r0p6_n1_cos",
+            "tip_twist_n0_deg",
+            "tip_twist_n2_sin_deg",
+            "fz_n4_cos_N",
+            "fz_n4_sin_N",
+            "fz_n3_sin_N",
+        ];
+        let channels: Vec<SweepChannel> = names.iter().map(of).collect();
+        let (named, instruments) = instrumented(&channels);
+        let read_by: Vec<usize> = named.iter().map(|own| own.instrument).collect();
+        assert_eq!(read_by, [0, 0, 0, 0, 1, 2, 2, 3, 3, 4]);
+        let expected = ["airloads_r0p87", "airloads_r0p6", "tip_twist", "fz_n4_N", "fz_n3_sin_N"];
+        assert_eq!(instruments, expected);
     }
 }

@@ -1,5 +1,6 @@
 //! The command from outside: files in, text and exit codes out.
 
+mod case_studies;
 mod crosscheck;
 mod everyday;
 mod hidden_effects;
