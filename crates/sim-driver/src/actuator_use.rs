@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::files::{Source, significant};
-use crate::output::{Printable, Sheet, csv_of};
+use crate::output::{Column, Printable, Sheet, csv_of};
 use crate::problem::{Fault, Place, Problem};
 use crate::stored_actuator::{StoredActuator, read_actuator};
 use measured_data::PointCsv;
@@ -239,7 +239,7 @@ impl ActuatorUse {
         let [input, output] = &self.columns;
         let word = self.error.as_ref().map(|own| if own.is_wanted { "wanted" } else { "measured" });
         let beside = word.map(|word| format!("{word}_{output}"));
-        let mut columns: Vec<(&str, &dyn Fn(&UseSample) -> String)> = vec![
+        let mut columns: Vec<Column<'_, UseSample>> = vec![
             (TIME, &|own| own.time_s.to_string()),
             (input, &|own| own.input.to_string()),
             (output, &|own| own.output.to_string()),

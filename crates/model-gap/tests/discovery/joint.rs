@@ -42,6 +42,7 @@ fn asked(truth: Actuator, only: &[String]) -> KindFinding<Actuator> {
         .map(|(p, (row, drive))| Point {
             id: p.to_string(),
             group: p,
+            is_reference: false,
             conditions: vec![drive.0, drive.1],
             measured: row.iter().map(|v| Some(v + DEVIATION * noise(&mut state))).collect(),
             deviation: vec![DEVIATION; 2],
