@@ -14,6 +14,7 @@
 //! | what to measure next | `next` |
 //! | the extended actuator, and what an actuator file holds | `extended`, `actuator_file` |
 //! | how an identified model fits its records | `judge` |
+//! | an actuator at work: prediction and inverse over a record | `actuator_file::at_work` |
 //! | the models of the discovery ladder | `rungs` |
 
 mod actuator_file;
@@ -37,6 +38,7 @@ mod sessions;
 mod simulator;
 mod surrogate;
 
+pub use actuator_file::at_work::{ActuatorUse, Deviation, UseError, UseSample};
 pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 pub use diagnosis::{Diagnosis, RunEnergy, diagnose};
 pub use error::DiagnosisError;

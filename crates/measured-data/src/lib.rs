@@ -29,8 +29,8 @@ pub use files::{
     write_folder, write_new,
 };
 pub use tables::{
-    Channel, ChannelFile, Channels, ColumnTable, Dimension, MeasuredTable, PointCsv, UNITS, Unit,
-    limits, parse_columns, parse_measured_csv, significant,
+    Channel, ChannelFile, Channels, ColumnTable, Dimension, EvenRecord, MeasuredTable, PointCsv,
+    UNITS, Unit, limits, parse_columns, parse_measured_csv, significant,
 };
 
 /// The example of the crate's README, run as a documentation test.

@@ -3,7 +3,7 @@
 use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
-use crate::actuator_use::{ActuatorUse, invert as inverted, predict as predicted};
+use crate::actuator_use::{samples_csv, used};
 use crate::curve_identification::identify_curves;
 use crate::figures::figure_files;
 use crate::files::{
@@ -14,8 +14,10 @@ use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use crate::stored_actuator::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
+use actuator_gap::{ActuatorUse, UseError};
+use measured_data::EvenRecord;
 use preisach_dyn::identify::Settings;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let base = match &args.start {
@@ -66,25 +68,35 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
 }
 
 pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
-    used(args.output.as_ref(), [&args.actuator, &args.input], args.format, predicted)
+    put_to_work(
+        args.output.as_ref(),
+        [&args.actuator, &args.input],
+        args.format,
+        StoredActuator::predicted,
+    )
 }
 
 pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
-    used(args.output.as_ref(), [&args.actuator, &args.wanted], args.format, inverted)
+    put_to_work(
+        args.output.as_ref(),
+        [&args.actuator, &args.wanted],
+        args.format,
+        StoredActuator::inverted,
+    )
 }
 
 /// Uses an actuator on a record; writes and prints what it did.
-fn used(
+fn put_to_work(
     output: Option<&PathBuf>,
     [actuator, record]: [&PathBuf; 2],
     format: Format,
-    of: fn(&Path, &Path) -> Result<ActuatorUse, SimError>,
+    of: fn(&StoredActuator, &EvenRecord) -> Result<ActuatorUse, UseError>,
 ) -> Result<(), SimError> {
     refuse_inputs(Some(actuator), output)?;
     refuse_inputs(Some(record), output)?;
-    let own = of(actuator, record)?;
+    let own = used([actuator, record], of)?;
     if let Some(path) = output {
-        write_atomic(path, own.csv().as_bytes())?;
+        write_atomic(path, samples_csv(&own).as_bytes())?;
     }
     print(&own.render(format)?)
 }

@@ -1,5 +1,7 @@
 //! The content of an actuator file: a model with where it comes from and how well it fits.
 
+pub(crate) mod at_work;
+
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, Doubt};
 use rotor_base::RecordUse;
@@ -125,6 +127,18 @@ pub struct StoredFit {
 }
 
 impl StoredActuator {
+    /// What a column of its input may be called, the usual name first: that of its data, then `command_V`.
+    pub fn input_columns(&self) -> Vec<String> {
+        let own = self.channels.as_ref().map(|own| own.input.clone());
+        own.into_iter().chain(["command_V".to_owned()]).collect()
+    }
+
+    /// The same of its output: that of its data, then `displacement_um`.
+    pub fn output_columns(&self) -> Vec<String> {
+        let own = self.channels.as_ref().map(|own| own.output.clone());
+        own.into_iter().chain(["displacement_um".to_owned()]).collect()
+    }
+
     /// What is impossible or unlikely about the actuator; nothing is known of that of a generic loop.
     pub fn doubts(&self) -> Vec<Doubt> {
         if self.channels.is_some() { Vec::new() } else { self.model.doubts() }
