@@ -1,0 +1,13 @@
+//! The languages.
+
+pub(crate) mod c;
+
+use crate::library::filled;
+use crate::plan::Plan;
+
+/// A text with the words of a plan and more filled in.
+fn with(plan: &Plan<'_>, text: &str, more: &[(&str, &str)]) -> String {
+    let words = plan.words();
+    let words: Vec<(&str, &str)> = words.iter().map(|(key, word)| (*key, word.as_str())).collect();
+    filled(&filled(text, more), &words)
+}
