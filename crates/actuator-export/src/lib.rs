@@ -32,6 +32,8 @@ use preisach_dyn::ActuatorModel;
 pub enum Target {
     /// C99, also C++: a header and a source, no allocation, no state but in structs handed over.
     C,
+    /// Python 3: a module with a class; `NumPy` for whole histories only.
+    Python,
 }
 
 /// The files, name and text of each, that hold an actuator and its inverse in one language.
@@ -55,6 +57,7 @@ pub fn export(
     let plan = Plan::new(model, name, time_step_s)?;
     Ok(match target {
         Target::C => targets::c::files(&plan),
+        Target::Python => targets::python::files(&plan),
     })
 }
 

@@ -6,3 +6,4 @@
 
 mod c;
 mod common;
+mod python;
