@@ -34,6 +34,8 @@ pub enum Target {
     C,
     /// Python 3: a module with a class; `NumPy` for whole histories only.
     Python,
+    /// MATLAB, also Octave: a handle class.
+    Matlab,
 }
 
 /// The files, name and text of each, that hold an actuator and its inverse in one language.
@@ -58,6 +60,7 @@ pub fn export(
     Ok(match target {
         Target::C => targets::c::files(&plan),
         Target::Python => targets::python::files(&plan),
+        Target::Matlab => targets::matlab::files(&plan),
     })
 }
 

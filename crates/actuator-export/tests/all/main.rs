@@ -6,4 +6,5 @@
 
 mod c;
 mod common;
+mod matlab;
 mod python;
