@@ -36,6 +36,8 @@ pub enum Target {
     Python,
     /// MATLAB, also Octave: a handle class.
     Matlab,
+    /// JSON: the parameters with names, units and meanings.
+    Json,
 }
 
 /// The files, name and text of each, that hold an actuator and its inverse in one language.
@@ -61,6 +63,7 @@ pub fn export(
         Target::C => targets::c::files(&plan),
         Target::Python => targets::python::files(&plan),
         Target::Matlab => targets::matlab::files(&plan),
+        Target::Json => targets::json::files(&plan),
     })
 }
 

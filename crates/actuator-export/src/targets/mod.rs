@@ -1,6 +1,7 @@
 //! The languages.
 
 pub(crate) mod c;
+pub(crate) mod json;
 pub(crate) mod matlab;
 pub(crate) mod python;
 

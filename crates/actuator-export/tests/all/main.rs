@@ -6,5 +6,7 @@
 
 mod c;
 mod common;
+mod json;
 mod matlab;
+mod messages;
 mod python;
