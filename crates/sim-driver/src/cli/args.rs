@@ -5,6 +5,8 @@ use crate::choices::choice_parser;
 use crate::identification::{ModelChoice, model_parser};
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
+use actuator_export::Target;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
 use std::path::PathBuf;
@@ -39,6 +41,8 @@ pub enum Command {
     Predict(PredictArgs),
     /// The voltage under which an actuator moves as wanted, and the error left.
     Invert(InvertArgs),
+    /// An actuator and its inverse as step functions: C, Python, MATLAB, or its parameters as JSON.
+    Export(ExportArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
     Diagnose(DiagnoseArgs),
     /// From a linear actuator upwards by data alone: what each step lacks, gains, and is worth to a rotor.
@@ -237,6 +241,36 @@ pub struct InvertArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+}
+
+/// `hhc export`.
+#[derive(Debug, Clone, Args)]
+pub struct ExportArgs {
+    /// Actuator file, from `hhc identify`.
+    #[arg(value_name = "ACTUATOR.ron")]
+    pub actuator: PathBuf,
+    /// Language to write.
+    #[arg(long, value_parser = export_parser())]
+    pub to: Target,
+    /// Samples per second of the step functions.
+    #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
+    pub sampling_hz: f64,
+    /// Name of files and functions: a lower-case identifier.
+    #[arg(long, value_name = "NAME", default_value = "actuator")]
+    pub name: String,
+    /// Folder to write, never overwritten.
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+}
+
+/// `c`, `python`, `matlab` or `json`.
+fn export_parser() -> impl TypedValueParser<Value = Target> {
+    PossibleValuesParser::new(["c", "python", "matlab", "json"]).map(|word| match word.as_str() {
+        "c" => Target::C,
+        "python" => Target::Python,
+        "matlab" => Target::Matlab,
+        _ => Target::Json,
+    })
 }
 
 /// `hhc import`.

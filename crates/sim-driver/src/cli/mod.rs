@@ -65,6 +65,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Identify(args)) => identify::identify(args),
         Some(Command::Predict(args)) => identify::predict(args),
         Some(Command::Invert(args)) => identify::invert(args),
+        Some(Command::Export(args)) => identify::export(args),
         Some(Command::Diagnose(args)) => diagnose::diagnose(args),
         Some(Command::Ladder(args)) => diagnose::ladder(args),
         Some(Command::Import(args)) => data::import(args),

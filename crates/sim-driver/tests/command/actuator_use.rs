@@ -47,6 +47,32 @@ fn the_voltage_of_a_wanted_motion_moves_the_actuator_so() {
 }
 
 #[test]
+fn an_actuator_goes_out_into_other_languages() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    place.hhc(&["identify", "bench", "-o", "a.ron", "--model", "dynamic-preisach"]).done();
+    for (to, names) in [
+        ("c", &["flap.c", "flap.h"][..]),
+        ("python", &["flap.py"]),
+        ("matlab", &["flap.m"]),
+        ("json", &["flap.json"]),
+    ] {
+        let out = format!("out_{to}");
+        let args = ["export", "a.ron", "--to", to, "--name", "flap", "--sampling-hz", "1000"];
+        let told = place.hhc(&[&args[..], &["-o", &out]].concat()).done();
+        for name in names {
+            assert!(told.contains(name), "{told}");
+            assert!(place.read(&format!("{out}/{name}")).len() > 500, "{name}");
+        }
+    }
+    place.hhc(&["export", "a.ron", "--to", "c", "-o", "out_c"]).rejected(&["out_c"]);
+    let bad = ["export", "a.ron", "--to", "c", "--name", "2 flaps", "-o", "b"];
+    place.hhc(&bad).rejected(&["a.ron", "2 flaps"]);
+    let bad = ["export", "a.ron", "--to", "c", "--sampling-hz", "0", "-o", "b"];
+    place.hhc(&bad).rejected(&["a.ron", "time step"]);
+}
+
+#[test]
 fn records_that_do_not_serve_are_refused_at_their_place() {
     let place = Place::new();
     write_bench(&place, "bench");
