@@ -8,9 +8,8 @@ pub(super) const STUDY: Study = Study {
     name: "oscillating-flap",
     is_quick: true,
     runs: &[
-        Run { label: "both Mach numbers", case: CASE, data: "flap_two_mach" },
-        Run { label: "Mach 0.5 alone", case: CASE, data: "flap_m0500" },
-        Run { label: "Mach 0.748 alone", case: CASE, data: "flap_m0748" },
+        Run { label: "harmonics at both Mach numbers", case: CASE, data: "flap_two_mach" },
+        Run { label: "the loop at Mach 0.5", case: CASE, data: "flap_m0500" },
     ],
     told: Teller::Plain(told),
 };

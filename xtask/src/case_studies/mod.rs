@@ -235,12 +235,25 @@ impl Done {
             format!("`{name}`: {}", values.collect::<Vec<_>>().join(", "))
         };
         let all: Vec<String> = self.findings.causes.iter().map(one).collect();
-        if all.is_empty() { "none".to_owned() } else { all.join("; ") }
+        if all.is_empty() { self.candidate() } else { all.join("; ") }
+    }
+
+    /// What was fitted and refused where no name is given.
+    fn candidate(&self) -> String {
+        let found = &self.diagnosis.found;
+        let Some(first) = found.finding.causes.first() else { return "none".to_owned() };
+        let values = first.parameters.iter().map(|own| {
+            let [low, high] = own.ci95.map(figured);
+            format!("{} {} ({low} to {high})", own.name, figured(own.value))
+        });
+        let values: Vec<String> = values.collect();
+        let id = found.candidates[first.candidate].id;
+        format!("none; fitted and refused: `{id}`: {}", values.join(", "))
     }
 
     /// The causes that were fitted in the place of those named, or are nearly as likely.
     fn rejected(&self) -> String {
-        if self.findings.causes.is_empty() {
+        if self.findings.compared.is_empty() {
             return "-".to_owned();
         }
         let mut all: Vec<(&str, f64, f64)> = Vec::new();
@@ -255,7 +268,7 @@ impl Done {
             format!("`{name}` {delta_text}{open}")
         };
         let all: Vec<String> = all.iter().take(4).map(one).collect();
-        if all.is_empty() { "none tried".to_owned() } else { all.join(", ") }
+        all.join(", ")
     }
 }
 

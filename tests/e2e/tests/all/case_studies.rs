@@ -37,18 +37,19 @@ fn a_flap_has_less_lift_and_the_moment_of_theory() {
     let case = "flap_two_mach/case.ron";
     let own = found(case, "flap_m0500");
     assert_eq!((own.verdict, own.confidence), (Verdict::Named, Confidence::Tentative));
-    assert_eq!(own.causes, ["flap-effectiveness"]);
     let cause = "flap-effectiveness";
+    assert_eq!(own.causes, [cause]);
     near(value(&own, cause, "lift"), 0.78, 0.01);
-    near(value(&own, cause, "hinge"), 0.80, 0.01);
     let [low, high] = value(&own, cause, "moment").ci95;
     assert!(low < 1.0 && high > 1.0, "{low} to {high}");
     // the moment is that of theory: no gain and no time is it
-    assert!(["sensor-gain", "timing", "unsteady-lag"].iter().all(|other| !is_open(&own, other)));
+    for other in ["sensor-gain", "timing", "unsteady-lag"] {
+        assert!(own.compared.iter().any(|own| own.cause == other), "{other}");
+        assert!(!is_open(&own, other), "{other}");
+    }
     // one factor does not hold at Mach 0.748
     let both = found(case, "flap_two_mach");
     assert_eq!((both.verdict, &both.causes[..]), (Verdict::Unknown, &[][..]));
-    assert!(found(case, "flap_m0748").structure_remains);
 }
 
 #[test]
@@ -63,12 +64,14 @@ fn a_strip_is_stiffer_and_further_out_or_faster() {
     near(value(&own, "root-offset", "offset_r"), 0.086, 0.01);
 }
 
+/// Stall alone explains thousands of chi-square; half of the misfit is left, so that no name is given.
 #[test]
-fn attached_flow_lacks_stall_and_what_stalled_flow_lacks_has_no_name() {
+fn attached_flow_through_stall_has_no_name() {
     let own = found("stall_naca0012/attached.ron", "stall_naca0012");
-    assert_eq!(own.causes, ["dynamic-stall"]);
-    assert_eq!(own.verdict, Verdict::NamedStructureRemains);
-    near(value(&own, "dynamic-stall", "share"), 0.95, 0.1);
-    let left = found("stall_naca0012/stalled.ron", "stall_naca0012");
-    assert_eq!((left.verdict, &left.causes[..]), (Verdict::Unknown, &[][..]));
+    let best = own.screen.iter().max_by(|a, b| a.score.total_cmp(&b.score)).unwrap();
+    assert_eq!(best.cause, "dynamic-stall");
+    for case in ["stall_naca0012/attached.ron", "stall_naca0012/stalled.ron"] {
+        let own = found(case, "stall_naca0012");
+        assert_eq!((own.verdict, &own.causes[..]), (Verdict::Unknown, &[][..]), "{case}");
+    }
 }
