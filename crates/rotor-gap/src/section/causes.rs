@@ -24,18 +24,20 @@ pub(super) struct Occasion<'a> {
     pub(super) model: &'a SectionModel,
     /// Whether a flap moves.
     pub(super) has_flap: bool,
-    /// Whether the section pitches.
-    pub(super) has_pitch: bool,
     /// Whether every frequency was stated.
     pub(super) has_frequency: bool,
+    /// Whether there are two reduced frequencies at least.
+    pub(super) has_frequencies: bool,
     /// Largest incidence of a motion with an amplitude, deg, and its Mach number.
     pub(super) highest: (f64, f64),
-    /// Names of the instruments.
+    /// Names of the instruments: of the loads, then of the pitch where the section pitches.
     pub(super) instruments: &'a [String],
 }
 
 /// Incidence below which no section is near stall, deg.
 const NEAR_STALL_DEG: f64 = 6.0;
+/// How far beyond the stall it is computed, deg: its effect is far from straight.
+const DEPTHS_DEG: [f64; 12] = [2.0, 0.5, 1.0, 3.0, 4.0, 5.0, 6.0, 7.5, 9.0, 11.0, 13.0, 16.0];
 /// Earliest stall, deg.
 const EARLIEST_DEG: f64 = 4.0;
 /// What loops that the constants were fitted to keep of a part of what stall changes.
@@ -56,7 +58,7 @@ fn share(amounts: &[f64]) -> CauseParameter {
 pub(super) fn library(o: &Occasion<'_>) -> Vec<SectionCause> {
     let mut all = vec![flap_effectiveness(o), compressibility(o), unsteady_lag(o), timing(o)];
     all.extend(o.instruments.iter().map(|name| sensor_gain(name)));
-    all.extend([dynamic_stall(o), pivot_compliance(), pitch_axis(o)]);
+    all.extend([dynamic_stall(o), pivot_compliance(o), pitch_axis(o)]);
     all
 }
 
@@ -108,10 +110,12 @@ fn unsteady_lag(o: &Occasion<'_>) -> SectionCause {
         amounts: vec![none + 0.2, none - 0.2, none + 1.0],
         shown: Shown::Itself,
     };
-    let parameters = vec![share("ratio", lag), share("apparent_mass", mass)];
+    // at one reduced frequency the two are one
+    let mut parameters = vec![share("ratio", lag)];
+    parameters.extend(o.has_frequencies.then(|| share("apparent_mass", mass)));
     PointCause::new("unsteady-lag", physics, parameters, move |m: &mut SectionModel, v| {
         m.lag_share += v[0] - lag;
-        m.mass_share += v[1] - mass;
+        m.mass_share += v.get(1).map_or(v[0] - lag, |own| own - mass);
     })
     .beside(&["timing", "pivot-compliance"], &["points at other reduced frequencies"])
 }
@@ -153,7 +157,7 @@ fn dynamic_stall(o: &Occasion<'_>) -> SectionCause {
         unit: "deg",
         none: 0.0,
         range: (0.0, deepest),
-        amounts: [2.0, 0.5, 5.0, 10.0].into_iter().filter(|own| *own < deepest).collect(),
+        amounts: DEPTHS_DEG.into_iter().filter(|own| *own < deepest).collect(),
         shown: Shown::Beside(vec![(0.0, highest_deg), (deepest, highest_deg - deepest)]),
     };
     PointCause::new("dynamic-stall", physics, vec![onset], move |m: &mut SectionModel, v| {
@@ -169,7 +173,7 @@ fn dynamic_stall(o: &Occasion<'_>) -> SectionCause {
     .blocked_if(o.model.stall.is_some(), "the sections of the case stall already")
 }
 
-fn pivot_compliance() -> SectionCause {
+fn pivot_compliance(o: &Occasion<'_>) -> SectionCause {
     let physics = "the axis gives way: the section plunges with the normal force";
     let give = CauseParameter {
         name: "semichords_per_cn",
@@ -183,12 +187,13 @@ fn pivot_compliance() -> SectionCause {
         m.give += v[0];
     })
     .beside(
-        &["unsteady-lag", "timing"],
+        &["unsteady-lag", "timing", "pitch-axis"],
         &[
             "the plunge of the axis, by an accelerometer",
             "a flap that moves while the section is held",
         ],
     )
+    .blocked_if(!o.has_frequencies, "one reduced frequency shows no plunge beside a lag")
 }
 
 fn pitch_axis(o: &Occasion<'_>) -> SectionCause {
@@ -199,7 +204,7 @@ fn pitch_axis(o: &Occasion<'_>) -> SectionCause {
             &["pivot-compliance", "unsteady-lag"],
             &["a ruler", "points at other reduced frequencies"],
         )
-        .blocked_if(!o.has_pitch, "the section does not pitch")
+        .blocked_if(o.instruments.len() < 2, "the section does not pitch")
 }
 
 /// Constants of the stall that an attached section may lack.

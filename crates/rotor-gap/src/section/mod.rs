@@ -279,7 +279,10 @@ pub fn diagnose_section(
     let causes = causes::library(&causes::Occasion {
         model: &model,
         has_flap: measured.motions.iter().any(|own| own.motion == Motion::Flap),
-        has_pitch: instruments.len() > 1,
+        has_frequencies: measured.motions.windows(2).any(|pair| {
+            let [a, b] = [&pair[0], &pair[1]].map(|own| own.reduced_frequency);
+            (a - b).abs() > 0.05 * a.max(b)
+        }),
         has_frequency: measured.motions.iter().all(|own| own.frequency_hz.is_some()),
         highest: measured
             .motions
