@@ -256,7 +256,7 @@ pub struct ExportArgs {
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,
     /// Name of files and functions: a lower-case identifier.
-    #[arg(long, value_name = "NAME", default_value = "actuator")]
+    #[arg(long, value_name = "NAME", default_value = "flap_actuator")]
     pub name: String,
     /// Folder to write, never overwritten.
     #[arg(short, long, value_name = "DIR")]
