@@ -83,7 +83,7 @@ impl<'a> Plan<'a> {
         lines
     }
 
-    /// Values of the placeholders that every language has.
+    /// What the templates of every language name, with its value.
     pub(crate) fn words(&self) -> [(&'static str, String); 7] {
         let range = self.model.range_volt;
         [

@@ -277,33 +277,16 @@ fn delayed(index: usize, steps: f64) -> Result<Vec<Constant>, ExportError> {
 
 /// Constants of a mode: the matrix exponential of the homogeneous motion over a step, and the weights of the inverse.
 fn resonance(mode: &Resonance, step_s: f64) -> Vec<Constant> {
-    let omega = TAU * mode.frequency_hz;
-    let zeta = mode.damping_ratio;
-    let sigma = zeta * omega;
-    let split = 1.0 - zeta * zeta;
-    let (c, s) = if split > 0.0 {
-        let damped = omega * split.sqrt();
-        let decay = (-sigma * step_s).exp();
-        let (sine, cosine) = (damped * step_s).sin_cos();
-        (decay * cosine, decay * sine / damped)
-    } else if split == 0.0 {
-        let decay = (-sigma * step_s).exp();
-        (decay, decay * step_s)
-    } else {
-        let apart = omega * (-split).sqrt();
-        let slow = (-omega * omega / (sigma + apart) * step_s).exp();
-        let ratio_less_one = (-2.0 * apart * step_s).exp_m1();
-        (0.5 * slow * (2.0 + ratio_less_one), -0.5 * slow * ratio_less_one / apart)
-    };
-    let lead_s = 2.0 * zeta / omega;
-    let second = 1.0 / (omega * step_s).powi(2);
+    let [[place, of_rate], [pull, rate]] = mode.free_motion(step_s);
+    let lead_s = mode.lead_s();
+    let second = 1.0 / (TAU * mode.frequency_hz * step_s).powi(2);
     let scalar = Constant::scalar;
     vec![
         scalar("LEAD_S", lead_s, "s", "a ramp is followed this much later"),
-        scalar("PLACE_OF_PLACE", c + sigma * s, "", "free motion over a step: place from place"),
-        scalar("PLACE_OF_RATE", s, "s", "place from rate"),
-        scalar("RATE_OF_PLACE", -omega * omega * s, "1/s", "rate from place"),
-        scalar("RATE_OF_RATE", c - sigma * s, "", "rate from rate"),
+        scalar("PLACE_OF_PLACE", place, "", "free motion over a step: place from place"),
+        scalar("PLACE_OF_RATE", of_rate, "s", "place from rate"),
+        scalar("RATE_OF_PLACE", pull, "1/s", "rate from place"),
+        scalar("RATE_OF_RATE", rate, "", "rate from rate"),
         scalar("FIRST", lead_s / (2.0 * step_s), "", "inverse: factor of the first difference"),
         scalar("SECOND", second, "", "inverse: factor of the second difference"),
     ]

@@ -73,6 +73,7 @@ fn a_measured_flap_makes_less_lift_than_theory() {
 #[derive(Default)]
 struct Plant {
     stall: Option<StallAirfoil>,
+    stalls_later_deg: f64,
     late_s: f64,
     gain: f64,
     flap_lift: f64,
@@ -107,7 +108,7 @@ fn loops(seed: u64, plant: &Plant) -> String {
             reduced_frequency: k,
             points: 60,
             stall: plant.stall,
-            stalls_later_rad: 0.0,
+            stalls_later_rad: plant.stalls_later_deg.to_radians(),
         });
         let rows = table.unwrap().rows;
         // as if the chord were 0.3 m in air at 20 C
@@ -136,6 +137,20 @@ fn loops(seed: u64, plant: &Plant) -> String {
         }
     }
     text
+}
+
+/// The onset is the incidence of the constants at the Mach number of the loop that goes furthest, and moves with it.
+#[test]
+fn a_stall_is_told_by_its_onset() {
+    let stall = StallAirfoil::Naca0012Measured;
+    let stated = stall.parameters(flap_aero::Mach::new(0.3).unwrap()).alpha1_rad.to_degrees();
+    for stalls_later_deg in [0.0, 1.5] {
+        let plant = Plant { stall: Some(stall), stalls_later_deg, ..Plant::default() };
+        let own = diagnosed(&section(), loops(7, &plant));
+        assert_eq!(ids(&own), ["dynamic-stall"], "{:?}", own.found.finding.reasons);
+        let onset = own.found.finding.causes[0].parameters[0].value;
+        assert!((onset - stated - stalls_later_deg).abs() < 0.3, "{onset} {stated}");
+    }
 }
 
 #[test]

@@ -166,11 +166,7 @@ impl ActuatorModel {
         for stage in &self.linkage {
             if let LinkageStage::Resonance(mode) = stage {
                 let omega = TAU * mode.frequency_hz;
-                own = with_rates(
-                    &own,
-                    [2.0 * mode.damping_ratio / omega, omega.powi(-2)],
-                    time_step_s,
-                );
+                own = with_rates(&own, [mode.lead_s(), omega.powi(-2)], time_step_s);
             }
         }
         for stage in &self.amplifier {

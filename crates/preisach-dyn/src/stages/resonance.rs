@@ -30,7 +30,13 @@ impl Resonance {
         check_within("damping_ratio", self.damping_ratio, 0.0..=100.0)
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> ResonanceStep {
+    /// The free motion over a step: place and rate (1/s) from `[place, rate]` before, one row each.
+    ///
+    /// ```text
+    /// [y, y'](h) = exp(A h) [y, y'](0),   A = [0 1; -w^2 -2 zeta w]
+    /// ```
+    /// `step_s` is above 0.
+    pub fn free_motion(&self, step_s: f64) -> [[f64; 2]; 2] {
         let omega = TAU * self.frequency_hz;
         let zeta = self.damping_ratio;
         let sigma = zeta * omega;
@@ -51,12 +57,18 @@ impl Resonance {
             let ratio_less_one = (-2.0 * apart * step_s).exp_m1();
             (0.5 * slow * (2.0 + ratio_less_one), -0.5 * slow * ratio_less_one / apart)
         };
-        ResonanceStep {
-            lead_s: 2.0 * zeta / omega,
-            step_s,
-            from_place: [c + sigma * s, -omega * omega * s],
-            from_rate: [s, c - sigma * s],
-        }
+        [[c + sigma * s, s], [-omega * omega * s, c - sigma * s]]
+    }
+
+    /// How much later than its input a ramp is followed, s.
+    pub fn lead_s(&self) -> f64 {
+        2.0 * self.damping_ratio / (TAU * self.frequency_hz)
+    }
+
+    pub(super) fn prepared(&self, step_s: f64) -> ResonanceStep {
+        let [[place, s], [pull, rate]] = self.free_motion(step_s);
+        let (from_place, from_rate) = ([place, pull], [s, rate]);
+        ResonanceStep { lead_s: self.lead_s(), step_s, from_place, from_rate }
     }
 }
 
