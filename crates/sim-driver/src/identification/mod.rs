@@ -201,14 +201,23 @@ fn identified(
     settings: Settings,
     compared: Compared<'_>,
 ) -> Result<BenchIdentification, SimError> {
-    let (rests, records): (Vec<_>, Vec<_>) = records.into_iter().partition(BenchRecord::is_at_rest);
+    let (rests, mut records): (Vec<_>, Vec<_>) =
+        records.into_iter().partition(BenchRecord::is_at_rest);
+    let mut switched_on = Vec::new();
+    for record in &mut records {
+        if let Some(from_zero) = record.from_switch_on(settings.range_volt) {
+            switched_on.push(Finding::SwitchedOn { id: record.id.clone() });
+            *record = from_zero;
+        }
+    }
     let table = || {
         let candidates = Candidates::default();
         compared.map(|done| compare_models(&records, &settings, &candidates, done)).transpose()
     };
     let (identification, comparison) = rayon::join(|| identify(&records, &settings), table);
     let mut identification = identification.map_err(|e| heading.failed(e))?;
-    identification.summary.findings.extend(rests.iter().map(Finding::of_rest));
+    let findings = &mut identification.summary.findings;
+    findings.extend(rests.iter().map(Finding::of_rest).chain(switched_on));
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),

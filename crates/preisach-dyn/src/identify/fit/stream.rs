@@ -3,7 +3,7 @@
 use crate::check::{check_count, check_positive};
 use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::fit::static_fit::Unknowns;
+use crate::identify::fit::static_fit::{Smoothness, Unknowns};
 use crate::identify::records::record::{UNEQUAL, sample_problem};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach};
 
@@ -22,7 +22,7 @@ pub struct StaticAccumulator {
     grid: PreisachGrid,
     unknowns: Unknowns,
     program: LeastSquaresProgram,
-    smoothness: f64,
+    settings: Settings,
     stride: usize,
     memory: Option<PlayMemory>,
     row: Row,
@@ -47,7 +47,7 @@ impl StaticAccumulator {
             grid,
             program: LeastSquaresProgram::new(unknowns.count),
             unknowns,
-            smoothness: settings.static_smoothness,
+            settings: settings.clone(),
             stride,
             memory: None,
             row: Row::new(),
@@ -122,7 +122,8 @@ impl StaticAccumulator {
         check_positive("variance of the outputs, deg^2", variance)?;
         let mut program = self.program.clone();
         program.scale(1.0 / count);
-        let mut map = self.unknowns.solved(&self.grid, program, self.smoothness, variance)?;
+        let smoothness = Smoothness::of(self.unknowns.determined(&program), &self.settings);
+        let mut map = self.unknowns.solved(&self.grid, program, smoothness, variance)?;
         map.constant += self.first_deg;
         StaticPreisach::new(self.grid, map)
     }

@@ -98,6 +98,11 @@ pub enum Finding {
         /// Share of the samples at that level, of a command the steady ones, percent.
         share_percent: f64,
     },
+    /// The record begins when the amplifier is switched on: the actuator came from 0 V.
+    SwitchedOn {
+        /// The record.
+        id: String,
+    },
     /// Samples of a channel stand out from their neighbours while the other does not move: they were
     /// left out, straight lines in their place.
     Spikes {
@@ -225,6 +230,13 @@ impl Finding {
                     "record {id}: the periodic command rests at {level:.2} {input} for {share_percent:.1} % of the samples: it is clipped"
                 ),
                 "record the voltage at the actuator's terminals, or keep the amplifier off its limit",
+            ),
+            Self::SwitchedOn { id } => (
+                Severity::Remark,
+                format!(
+                    "record {id}: the output jumps while the command has hardly moved: it came up from 0 {input} at the first sample"
+                ),
+                "begin a record before the amplifier is switched on, or wait until the output rests",
             ),
             Self::Spikes { id, channel, samples, index, time_s, value } => (
                 Severity::Remark,

@@ -14,3 +14,4 @@ pub(crate) mod settings;
 pub(crate) mod spikes;
 pub(crate) mod split_rule;
 pub(crate) mod subject;
+pub(crate) mod switch_on;
