@@ -3,9 +3,10 @@
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
 use crate::files::{BenchData, RonIndex, Source, read_bench};
-use crate::identification::{BenchIdentification, dataset_place, identify_bench};
 use crate::problem::{Fault, Place, Problem};
-use crate::stored_actuator::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
+use bench_study::BenchError;
+use bench_study::identification::{BenchIdentification, dataset_place, identify_bench};
+use bench_study::stored::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -48,14 +49,14 @@ impl CaseActuators {
 /// Gets the actuators of a case: identifies, reads or makes them.
 ///
 /// # Errors
-/// Every problem of the bench data or the actuator file; [`SimError::Actuator`] for an
+/// Every problem of the bench data or the actuator file; [`BenchError::Actuator`](bench_study::BenchError::Actuator) for an
 /// identification that fails.
 pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     let case = &loaded.case;
     let values = &case.actuator;
     let (low, high) = values.range_volt;
     let fail =
-        |source| SimError::Actuator { place: loaded.index.place("actuator.range_V"), source };
+        |source| BenchError::Actuator { place: loaded.index.place("actuator.range_V"), source };
     let range = VoltageRange::new(low, high).map_err(fail)?;
     // the case gives the amplitude at full scale, the model wants it at the ends of the range
     let full_scale = 2.0 * case.control.amplitude_volt / range.span_volt();

@@ -4,8 +4,9 @@ use crate::SimError;
 use crate::files::{Source, significant};
 use crate::output::{Column, Printable, Sheet, csv_of};
 use crate::problem::Place;
-use crate::stored_actuator::{StoredActuator, read_actuator};
 use actuator_gap::{ActuatorUse, UseError, UseSample};
+use bench_study::BenchError;
+use bench_study::stored::{StoredActuator, read_actuator};
 use measured_data::EvenRecord;
 use std::path::Path;
 
@@ -23,7 +24,8 @@ pub fn used(
     of(&own, &given).map_err(|error| match error {
         UseError::Record(problem) => problem.into(),
         UseError::Actuator(source) => {
-            SimError::Actuator { place: Place::file(record.display().to_string()), source }
+            let place = Place::file(record.display().to_string());
+            BenchError::Actuator { place, source }.into()
         }
     })
 }

@@ -7,10 +7,10 @@ use crate::files::{
     BenchData, Channel, Channels, DATASET, DataSet, Folder, RonIndex, Source, missing_file,
     read_bench, read_dataset,
 };
-use crate::identification::gain;
 use crate::output::Printable;
 use crate::problem::{Fault, Place, Problem, Problems};
-use crate::stored_actuator::{GainRule, actuator_warnings, read_actuator};
+use bench_study::identification::gain;
+use bench_study::stored::{GainRule, actuator_warnings, read_actuator};
 use measured_data::DatasetKind;
 use preisach_dyn::identify::Settings;
 use rotor_gap::check_columns;

@@ -1,6 +1,8 @@
 //! Choices of case files on the command line, by the names that serde knows.
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use bench_study::identification::ModelChoice;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use preisach_dyn::identify::Family;
 use rotor_study::case::variant_names;
 use serde::de::value::{Error, StrDeserializer};
 use serde::de::{DeserializeOwned, IntoDeserializer};
@@ -15,6 +17,18 @@ pub(crate) fn spelt(name: &str, separator: char) -> String {
         text.push(c.to_ascii_lowercase());
     }
     text
+}
+
+/// Reads a choice of models from the command line.
+pub(crate) fn model_parser() -> impl TypedValueParser<Value = ModelChoice> {
+    let spelling = |family: Family| spelt(&format!("{family:?}"), '-');
+    let best = PossibleValue::new("best")
+        .help("the one that cross-validation over the training runs chooses");
+    // the parser keeps its names as long as the program runs
+    let families =
+        Family::ALL.map(|family| PossibleValue::new(&*spelling(family).leak()).help(family.name()));
+    PossibleValuesParser::new(std::iter::once(best).chain(families))
+        .map(move |given| Family::ALL.into_iter().find(|family| spelling(*family) == given))
 }
 
 /// Reads a choice without fields from the command line, spelt in lower case with hyphens.

@@ -2,6 +2,7 @@
 
 use crate::problem::{Fault, Place, Problem, Problems};
 use actuator_gap::DiagnosisError;
+use bench_study::BenchError;
 use flap_aero::AeroError;
 use measured_data::DataError;
 use preisach_dyn::PreisachError;
@@ -24,32 +25,9 @@ pub enum SimError {
     Data(#[from] DataError),
 
     // ---- models; the family depends on the source ----
-    /// The actuator model or its identification.
-    #[error("{place}: {source}")]
-    Actuator {
-        /// Case or data that asked for it.
-        place: Place,
-        /// What went wrong.
-        source: PreisachError,
-    },
-    /// The model of a generic loop or its identification.
-    #[error("{place}: {message}")]
-    Loop {
-        /// Data that asked for it.
-        place: Place,
-        /// What went wrong, in the units of the data.
-        message: String,
-        /// The same as the model says it.
-        source: PreisachError,
-    },
-    /// The misfit of a record, its diagnosis, or data in which nothing is to be explained.
-    #[error("{place}: {source}")]
-    Diagnosis {
-        /// The data.
-        place: Place,
-        /// What went wrong.
-        source: DiagnosisError,
-    },
+    /// The bench: an actuator model, its identification or its diagnosis.
+    #[error(transparent)]
+    Bench(BenchError),
     /// The section aerodynamics.
     #[error("section: {0}")]
     Section(#[from] AeroError),
@@ -159,12 +137,8 @@ impl SimError {
             Self::WakeDiverged { .. } => Family::NumericalFailure,
             Self::NotReproduced { .. } => Family::DataMismatch,
             Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
-            Self::Actuator { source, .. }
-            | Self::Loop { source, .. }
-            | Self::Diagnosis { source: DiagnosisError::Actuator(source), .. } => {
-                actuator_family(source)
-            }
-            Self::Data(_) | Self::Section(_) | Self::Diagnosis { .. } => Family::RejectedInput,
+            Self::Bench(source) => bench_family(source),
+            Self::Data(_) | Self::Section(_) => Family::RejectedInput,
             Self::Study { source, .. } => study_family(source),
         }
     }
@@ -172,6 +146,17 @@ impl SimError {
     /// Exit code of the program: 1 numerical failure, 2 rejected input, 3 data mismatch.
     pub fn exit_code(&self) -> u8 {
         self.family() as u8
+    }
+}
+
+fn bench_family(error: &BenchError) -> Family {
+    match error {
+        BenchError::Actuator { source, .. }
+        | BenchError::Loop { source, .. }
+        | BenchError::Diagnosis { source: DiagnosisError::Actuator(source), .. } => {
+            actuator_family(source)
+        }
+        _ => Family::RejectedInput,
     }
 }
 
@@ -227,6 +212,15 @@ fn trim_family(error: &TrimError) -> Family {
         | TrimError::NoDescent { .. } => Family::RejectedInput,
         TrimError::Response(source) => response_family(source),
         _ => Family::NumericalFailure,
+    }
+}
+
+impl From<BenchError> for SimError {
+    fn from(error: BenchError) -> Self {
+        match error {
+            BenchError::Data(source) => Self::Data(source),
+            other => Self::Bench(other),
+        }
     }
 }
 

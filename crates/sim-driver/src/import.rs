@@ -1,11 +1,12 @@
 //! What `hhc import` prints.
 
 use crate::files::{Channel, DataSet, Folder, read_dataset};
-use crate::identification::records;
 use crate::output::{Printable, Sheet, table};
+use bench_study::Glance;
+use bench_study::identification::records;
 pub use measured_data::import::*;
 use measured_data::significant;
-use preisach_dyn::identify::{Glance, Severity, Subject};
+use preisach_dyn::identify::{Severity, Subject};
 use serde::Serialize;
 use std::ops::Deref;
 

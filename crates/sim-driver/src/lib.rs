@@ -7,10 +7,9 @@
 //! |---|---|
 //! | problems of user files, each with file, line, field and remedy | [`problem`] |
 //! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
-//! | data of the figures of an identification | [`figures`] |
 //! | what an import prints | [`import`] |
 //! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
-//! | actuators: identification from a bench, stored models, their use | [`identification`], [`stored_actuator`], [`actuator`], [`actuator_use`] |
+//! | the actuators of a case, their use; identified and stored by [`bench_study`] | [`actuator`], [`actuator_use`] |
 //! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
 //! | two results side by side | [`compare`] |
@@ -24,12 +23,9 @@ pub mod check;
 mod choices;
 pub mod cli;
 pub mod compare;
-pub mod curve_identification;
 pub mod diagnose;
 mod error;
-pub mod figures;
 pub mod files;
-pub mod identification;
 pub mod import;
 pub mod output;
 pub mod print;
@@ -38,7 +34,6 @@ pub mod report;
 pub mod results;
 pub mod run;
 pub mod section;
-pub mod stored_actuator;
 pub mod sweep;
 mod terminal;
 

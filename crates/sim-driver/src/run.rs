@@ -163,7 +163,7 @@ pub fn run_trimmed(
 /// The result of a run with its case and the hashes of its inputs, as it is stored.
 ///
 /// # Errors
-/// As [`StoredResult::new`], and [`SimError::Actuator`] if a model cannot follow a bench record.
+/// As [`StoredResult::new`], and [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a bench record.
 pub fn stored_of(loaded: &LoadedCase, outcome: &RunOutcome) -> Result<StoredResult, SimError> {
     let bench = BenchPart::of(&outcome.actuators)?;
     let inputs = [outcome.actuators.inputs.as_slice(), &loaded.measured.inputs].concat();

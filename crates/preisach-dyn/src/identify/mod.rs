@@ -25,7 +25,6 @@ pub use fit::stream::StaticAccumulator;
 pub use fit::validate::Validation;
 pub use records::drive::{Drive, Waveform};
 pub use records::findings::{Channel, Finding, Identifiability, Severity};
-pub use records::glance::Glance;
 pub use records::noise::{CycleNoise, RestNoise};
 pub use records::record::{BenchRecord, RecordWindows};
 pub use records::settings::{FlapZero, RateSmoothness, Settings};

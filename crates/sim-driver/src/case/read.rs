@@ -6,7 +6,7 @@ use super::{ActuatorChoice, ActuatorPath, Case, CaseFaults, ControlActuator, Pla
 use crate::SimError;
 use crate::files::{Folder, RonIndex, SHIPPED_BENCH, SHIPPED_CASES, Source, read_ron, shipped};
 use crate::problem::{Fault, Problem, Problems};
-use crate::stored_actuator::read_actuator;
+use bench_study::stored::read_actuator;
 use rotor_study::StudyError;
 use std::path::Path;
 

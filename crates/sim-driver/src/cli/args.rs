@@ -2,10 +2,11 @@
 
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
-use crate::identification::{ModelChoice, model_parser};
+use crate::choices::model_parser;
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use actuator_export::Target;
+use bench_study::identification::ModelChoice;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};

@@ -17,7 +17,7 @@ use crate::files::{
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use crate::stored_actuator::{read_actuator, write_actuator};
+use bench_study::stored::{read_actuator, write_actuator};
 use measured_data::{Accuracy, DatasetKind, dataset_kind};
 use preisach_dyn::ActuatorModel;
 use rotor_gap::{TableData, read_table};

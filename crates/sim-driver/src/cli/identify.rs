@@ -4,21 +4,40 @@ use super::args::{ExportArgs, IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::actuator_use::{samples_csv, used};
-use crate::curve_identification::identify_curves;
-use crate::figures::figure_files;
 use crate::files::{
     DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, write_atomic,
     write_folder,
 };
-use crate::identification::{BenchIdentification, MODELS_COMPARED, identify_bench, identify_loops};
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use crate::stored_actuator::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use actuator_gap::{ActuatorUse, UseError};
+use bench_study::BenchError;
+use bench_study::curves::{CurvesResult, identify_curves};
+use bench_study::figures::figure_files;
+use bench_study::identification::{
+    BenchIdentification, IdentifyResult, MODELS_COMPARED, identify_bench, identify_loops,
+};
+use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::EvenRecord;
 use preisach_dyn::identify::Settings;
 use std::path::PathBuf;
+
+impl Printable for IdentifyResult {
+    fn text(&self) -> String {
+        Self::text(self)
+    }
+
+    fn details(&self) -> String {
+        Self::details(self)
+    }
+}
+
+impl Printable for CurvesResult {
+    fn text(&self) -> String {
+        Self::text(self)
+    }
+}
 
 pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let base = match &args.start {
@@ -132,7 +151,7 @@ fn record_files(
 
 /// The identification with the model that is wanted in place.
 fn picked(
-    found: Result<BenchIdentification, SimError>,
+    found: Result<BenchIdentification, BenchError>,
     args: &IdentifyArgs,
     progress: &Progress,
 ) -> Result<BenchIdentification, SimError> {

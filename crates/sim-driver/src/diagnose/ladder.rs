@@ -72,7 +72,7 @@ pub enum Climb {
 /// explained; the case tells what a rung is worth to a rotor.
 ///
 /// # Errors
-/// [`SimError::Diagnosis`] without slow runs and as [`super::diagnose`]; everything a run of the case can fail by.
+/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) without slow runs and as [`super::diagnose`]; everything a run of the case can fail by.
 pub fn climb(
     measured: &Records,
     reference: &[Record],

@@ -20,8 +20,9 @@ pub use story::{Story, bench_page};
 
 use crate::SimError;
 use crate::problem::Place;
-use crate::stored_actuator::StoredActuator;
 use actuator_gap::DiagnosisError;
+use bench_study::BenchError;
+use bench_study::stored::StoredActuator;
 use preisach_dyn::ActuatorModel;
 
 /// Name of the page of a diagnosis.
@@ -30,7 +31,7 @@ pub const PAGE_FILE: &str = "report.html";
 /// Diagnoses measured runs against the base model of the reference runs.
 ///
 /// # Errors
-/// [`SimError::Diagnosis`] at the place of the data set.
+/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data set.
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, SimError> {
     actuator_gap::diagnose(measured, question).map_err(|error| at(&measured.folder, error))
 }
@@ -38,7 +39,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
 /// What planned runs would show on an actuator; `told` hears how many causes of how many are done.
 ///
 /// # Errors
-/// [`SimError::Diagnosis`] at the file of the plan.
+/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the file of the plan.
 pub fn plan(
     model: &ActuatorModel,
     planned: &Planned<'_>,
@@ -47,19 +48,19 @@ pub fn plan(
     told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Plan, SimError> {
     let found = actuator_gap::plan(model, planned, Some(store), told);
-    found.map_err(|source| SimError::Diagnosis { place: Place::file(file), source })
+    Ok(found.map_err(|source| BenchError::Diagnosis { place: Place::file(file), source })?)
 }
 
 /// The error of a diagnosis at the place of its data.
 fn at(folder: &str, error: impl Into<DiagnosisError>) -> SimError {
     let place = Place::file(format!("{folder}/dataset.ron"));
-    SimError::Diagnosis { place, source: error.into() }
+    BenchError::Diagnosis { place, source: error.into() }.into()
 }
 
 /// The extended actuator of a diagnosis, as a file holds it.
 ///
 /// # Errors
-/// [`SimError::Diagnosis`] at the place of the data set.
+/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data set.
 pub fn extended(found: &Diagnosis) -> Result<StoredActuator, SimError> {
     found.extended().map_err(|source| at(&found.folder, source))
 }

@@ -20,8 +20,8 @@ pub use report_page::Section;
 pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
 pub use tables::{histories_csv, robustness_csv, sensitivity_csv};
 
-use crate::identification::fit_table;
 use crate::results::{Figures, StoredResult};
+use bench_study::identification::fit_table;
 
 /// A stored result with its figures, as it is shown.
 #[derive(Debug, Clone, Copy)]

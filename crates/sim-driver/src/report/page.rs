@@ -3,7 +3,7 @@
 use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart, measured_chart};
 use super::{StudyReport, assumptions, state_lines};
 use crate::results::{BenchPart, by_set, curve_name, set_name};
-use crate::stored_actuator::StoredFit;
+use bench_study::stored::StoredFit;
 use maud::{Markup, PreEscaped, html};
 use preisach_dyn::identify::RecordUse;
 use report_page::{Charts, Section, page};

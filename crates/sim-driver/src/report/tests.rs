@@ -3,11 +3,11 @@
 use super::{StudyReport, report_html};
 use crate::case::{FreeWakeValues, InflowChoice, PAPER_CASE, shipped_case};
 use crate::files::{SHIPPED_BENCH, read_bench, shipped};
-use crate::identification::identify_bench;
 use crate::results::{
     Baseline, BenchPart, ControlEnd, ControlHead, ControlRecord, FlapRecord, RunResult, SeriesLine,
     StoredResult, bench_loops, figures,
 };
+use bench_study::identification::identify_bench;
 use preisach_dyn::identify::Settings;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_study::{HubLoads, Sensitivity, SensitivityRecord};

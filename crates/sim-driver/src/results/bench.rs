@@ -3,9 +3,10 @@
 use crate::SimError;
 use crate::actuator::CaseActuators;
 use crate::files::BenchData;
-use crate::identification::BenchIdentification;
 use crate::problem::Place;
-use crate::stored_actuator::StoredFit;
+use bench_study::BenchError;
+use bench_study::identification::BenchIdentification;
+use bench_study::stored::StoredFit;
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::RecordUse;
 use serde::{Deserialize, Serialize};
@@ -25,7 +26,7 @@ impl BenchPart {
     /// Of the actuators of a case; none for actuators without data.
     ///
     /// # Errors
-    /// [`SimError::Actuator`] if a model cannot follow a bench record.
+    /// [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a bench record.
     pub fn of(actuators: &CaseActuators) -> Result<Option<Self>, SimError> {
         let loops = match &actuators.bench {
             Some((data, found)) => bench_loops(data, found)?,
@@ -67,7 +68,7 @@ const MOST_POINTS: usize = 500;
 /// frequency, the larger amplitude first.
 ///
 /// # Errors
-/// [`SimError::Actuator`] if a model cannot follow a record.
+/// [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a record.
 pub fn bench_loops(
     data: &BenchData,
     found: &BenchIdentification,
@@ -79,7 +80,7 @@ pub fn bench_loops(
         let drive = &report.drive;
         let simulate = |model: &ActuatorModel| {
             let simulated = model.simulate(&record.voltage_volt, record.time_step_s);
-            simulated.map(|simulated| simulated.output_deg).map_err(|source| SimError::Actuator {
+            simulated.map(|simulated| simulated.output_deg).map_err(|source| BenchError::Actuator {
                 place: Place::file(&data.folder).field(&record.id),
                 source,
             })

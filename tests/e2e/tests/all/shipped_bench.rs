@@ -1,14 +1,14 @@
 //! The shipped bench through the driver: identification within its bounds, held-out runs apart.
 
 use crate::everyday::bench;
+use bench_study::identification::identify_bench;
+use bench_study::stored::StoredFit;
 use everyday_bench::family::Family;
 use everyday_bench::hidden::Deal;
 use everyday_bench::set::{Request, set};
 use preisach_dyn::identify::{RecordUse, Settings};
 use sim_driver::actuator::case_actuators;
 use sim_driver::case::{PAPER_CASE, shipped_case};
-use sim_driver::identification::identify_bench;
-use sim_driver::stored_actuator::StoredFit;
 
 fn is_near(fit: &StoredFit, hz: f64) -> bool {
     (fit.frequency_hz / hz - 1.0).abs() < 0.05

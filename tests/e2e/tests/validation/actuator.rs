@@ -2,10 +2,10 @@
 
 use std::sync::LazyLock;
 
+use bench_study::identification::identify_bench;
 use preisach_dyn::identify::{Identification, RecordFit, RecordReport, RecordUse, Settings};
 use preisach_dyn::{ActuatorLaw, HysteresisLaw, StartState};
 use sim_driver::files::{SHIPPED_BENCH, read_bench, shipped};
-use sim_driver::identification::identify_bench;
 use validation::{Check, Failure, row, shared, too_few, worst};
 
 pub(crate) const BENCH: &str = "synthetic bench records, fixtures/bench/apa500l_synthetic";

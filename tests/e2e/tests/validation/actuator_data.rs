@@ -3,12 +3,12 @@
 
 use std::sync::LazyLock;
 
+use bench_study::curves::identify_curves;
+use bench_study::identification::{identify_bench, identify_loops};
 use preisach_dyn::InverseSettings;
 use preisach_dyn::identify::{Family, ModelComparison, RecordFit, RecordUse, Settings};
 use rotor_base::{Harmonic, HarmonicSeries};
-use sim_driver::curve_identification::identify_curves;
 use sim_driver::files::{DataSet, Folder, SHIPPED_BENCH, read_bench, read_dataset, shipped};
-use sim_driver::identification::{identify_bench, identify_loops};
 use sim_driver::import::{ColumnOptions, ImportRequest, MOST_SAMPLES, import};
 
 use crate::actuator::{BENCH, identified};

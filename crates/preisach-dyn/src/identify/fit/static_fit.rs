@@ -21,7 +21,7 @@ use crate::{PlayMap, PreisachError, PreisachGrid};
 ///
 /// `targets_deg` has one row per slow record, one value per sample.
 pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayMap, PreisachError> {
-    let Training { grid, slow: records, .. } = training;
+    let Training { grid, settings, slow: records, .. } = training;
     let unknowns = Unknowns::new(grid);
     let spread = targets_deg.iter().map(|targets| spread(targets)).fold(0.0, f64::max);
     let mut program = normal(training).clone();
@@ -33,7 +33,8 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
             program.aim(&row, targets[index], weight);
         }
     }
-    unknowns.solved(grid, program, training.smoothness(), spread * spread)
+    let smoothness = Smoothness::of(determined(training), settings);
+    unknowns.solved(grid, program, smoothness, spread * spread)
 }
 
 /// Cells of the (alpha, beta) plane that a density is to be alike in.

@@ -2,7 +2,6 @@
 
 use crate::identify::Settings;
 use crate::identify::fit::program::LeastSquaresProgram;
-use crate::identify::fit::static_fit::{self, Smoothness};
 use crate::identify::records::prepared::Prepared;
 use crate::{PlayMap, PreisachError, PreisachGrid};
 use std::sync::{Arc, OnceLock};
@@ -64,11 +63,6 @@ impl<'p> Training<'p> {
         let is_same = slow.len() == self.slow.len();
         let slow_once = if is_same { Arc::clone(&self.slow_once) } else { Arc::default() };
         Self { slow, fast, slow_once, ..*self }
-    }
-
-    /// Smoothness of the static density.
-    pub(crate) fn smoothness(&self) -> Smoothness {
-        Smoothness::of(static_fit::determined(self), self.settings)
     }
 
     /// All of them, the slow ones first.

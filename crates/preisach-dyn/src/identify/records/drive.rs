@@ -120,7 +120,7 @@ impl Drive {
 
     /// How far the output lags the command at the strongest harmonic of the steady cycles, deg of
     /// harmonic phase, -180 to 180; none where the cycles cannot be fitted.
-    pub(crate) fn lag_deg(&self, record: &BenchRecord) -> Option<f64> {
+    pub fn lag_deg(&self, record: &BenchRecord) -> Option<f64> {
         let n = self.strongest_harmonic;
         let per_sample = self.base_hz * record.time_step_s;
         let count = self.harmonics_within(record.time_step_s, 8).max(n);

@@ -122,7 +122,7 @@ impl RestNoise {
 
 impl RestNoise {
     /// It in words, with the symbol of the unit of the output.
-    pub(crate) fn words(&self, output: &str) -> String {
+    pub fn words(&self, output: &str) -> String {
         let Self { std_deg, drift_deg_per_min, hum_deg, hum_hz } = *self;
         let [noise, drift, hum] =
             [std_deg, drift_deg_per_min, hum_deg].map(|value| significant(value, 3));

@@ -5,8 +5,9 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::LoadedCase;
 use crate::files::{SHIPPED_BENCH, read_bench, ron_text, shipped};
-use crate::identification::identify_bench;
 use crate::problem::{Fault, Place, Problem};
+use bench_study::BenchError;
+use bench_study::identification::identify_bench;
 use measured_data::{DatasetKind, SweepData};
 use model_gap::points::{PointFinding, PointTable};
 use preisach_dyn::ActuatorModel;
@@ -168,7 +169,8 @@ impl Asked<'_> {
                 refused(case.index.place(&format!("uncertain[{number}].field")), error.to_string())
             }
             RotorGapError::Gap(source) => {
-                SimError::Diagnosis { place: Place::file(&data.folder), source: source.into() }
+                let place = Place::file(&data.folder);
+                BenchError::Diagnosis { place, source: source.into() }.into()
             }
             RotorGapError::Study { source, .. } => case.located(*source),
             error => refused(Place::file(&data.folder), error.to_string()),

@@ -6,6 +6,7 @@ use crate::diagnose::story::{common_words, one_of, screening, sure, told, valued
 use crate::files::significant;
 use crate::output::{Printable, Sheet, json, table_of, unique};
 use crate::problem::Place;
+use bench_study::BenchError;
 use diagnosis_page::{Words, points_page};
 use model_gap::discovery::{Compared, Found, Verdict};
 use model_gap::points::{ChannelGain, PointFinding, PointTable};
@@ -38,14 +39,14 @@ impl PointDiagnosis {
     /// Finds what the simulation of a table lacks; with `only`, fits these suspects and refuses nothing.
     ///
     /// # Errors
-    /// [`SimError::Diagnosis`] at the place of the data.
+    /// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data.
     pub fn of(
         (title, folder): (String, &str),
         data_kind: &'static str,
         table: PointTable,
         only: &[String],
     ) -> Result<Self, SimError> {
-        let at = |source: GapError| SimError::Diagnosis {
+        let at = |source: GapError| BenchError::Diagnosis {
             place: Place::file(folder),
             source: source.into(),
         };

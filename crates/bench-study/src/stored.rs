@@ -1,9 +1,9 @@
 //! Actuator files: reading with places, writing, and what is unlikely about them.
 
-use crate::SimError;
-use crate::files::{RonFile, Source, read_ron, ron_text, write_atomic};
-use crate::problem::{Fault, Place, Problem, Problems};
+use crate::BenchError;
 pub use actuator_gap::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+use measured_data::problem::{Fault, Place, Problem, Problems};
+use measured_data::{DataError, RonFile, Source, read_ron, ron_text, write_atomic};
 use preisach_dyn::{ActuatorLaw, Doubt, PreisachError, Weight};
 use std::path::Path;
 
@@ -34,9 +34,10 @@ pub fn actuator_warnings(stored: &StoredActuator, place: impl Fn(&str) -> Place)
 /// Writes an actuator file atomically.
 ///
 /// # Errors
-/// [`SimError::Data`].
-pub fn write_actuator(stored: &StoredActuator, path: &Path) -> Result<(), SimError> {
-    let text = ron_text(stored).map_err(|e| SimError::not_written(path, &e))?;
+/// [`BenchError::Data`].
+pub fn write_actuator(stored: &StoredActuator, path: &Path) -> Result<(), BenchError> {
+    let text = ron_text(stored)
+        .map_err(|e| DataError::NotWritten { path: path.to_owned(), reason: e.to_string() })?;
     let (what, units) = match &stored.channels {
         Some(channels) => (
             format!("Model of {} to {}", channels.input, channels.output),
@@ -112,7 +113,7 @@ pub fn read_actuator(source: &Source) -> Result<StoredActuator, Problems> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::files::RonIndex;
+    use measured_data::RonIndex;
     use preisach_dyn::{AmplifierStage, LinkageStage, SensorStage};
 
     fn source(text: &str) -> Source {

@@ -8,7 +8,7 @@
 //!
 //! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
 
-use crate::SimError;
+use crate::BenchError;
 use crate::identification::BenchIdentification;
 use preisach_dyn::forc::DiagramPoint;
 use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
@@ -18,8 +18,8 @@ use std::fmt::Write;
 /// Names and texts of the tables.
 ///
 /// # Errors
-/// [`SimError::Actuator`] or [`SimError::Loop`] if the model cannot be simulated on one of its records.
-pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>, SimError> {
+/// [`BenchError::Actuator`] or [`BenchError::Loop`] if the model cannot be simulated on one of its records.
+pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>, BenchError> {
     let fail = |source: PreisachError| found.heading.failed(source);
     let loops: Result<Vec<(String, String)>, PreisachError> =
         (0..found.records.len()).into_par_iter().map(|number| loop_table(found, number)).collect();
@@ -86,7 +86,7 @@ fn density_table(found: &BenchIdentification) -> Result<Option<(String, String)>
 /// `rise` is the output's rise when the play crosses the cell, the integral of `2 mu`; `density` is
 /// `mu = rise / (2 c^2)` with the cell's side `c`. The cells of half-width 0 are the reversible part:
 /// their density is the same rise spread over a whole cell.
-pub(crate) fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> String {
+pub fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit: &str) -> String {
     let cell = grid.cell_volt();
     let mut text = format!("half_width_{input},centre_{input},rise{unit},density\n");
     for (play, rises) in map.rises().iter().enumerate() {
@@ -102,7 +102,7 @@ pub(crate) fn density_csv(grid: &PreisachGrid, map: &PlayMap, input: &str, unit:
 
 /// A FORC diagram: reversal and input of every point, half-width and centre of the relays there, and
 /// the density, output per squared input.
-pub(crate) fn diagram_csv(points: &[DiagramPoint], input: &str) -> String {
+pub fn diagram_csv(points: &[DiagramPoint], input: &str) -> String {
     let mut text = format!("reversal_{input},{input},half_width_{input},centre_{input},density\n");
     for p in points {
         let _ = writeln!(

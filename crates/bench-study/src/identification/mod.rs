@@ -3,16 +3,15 @@
 mod choice;
 mod summary;
 
-pub(crate) use choice::model_parser;
 pub use choice::{ModelChoice, Pick, PickReason};
-pub(crate) use summary::fit_table;
+pub use summary::fit_table;
 pub use summary::{FindingLine, IdentifyResult, ModelLine};
 
-use crate::SimError;
-use crate::files::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
-use crate::problem::Place;
-use crate::stored_actuator::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+use crate::BenchError;
+use crate::stored::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use actuator_gap::{DiagnosisError, NotJudged, judged};
+use measured_data::problem::Place;
+use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
     RecordWindows, Settings, Subject, compare_models, identify,
@@ -46,7 +45,7 @@ pub struct DataHeading {
 }
 
 /// The place of the description of a data folder.
-pub(crate) fn dataset_place(folder: &str) -> Place {
+pub fn dataset_place(folder: &str) -> Place {
     Place::file(format!("{folder}/{DATASET}"))
 }
 
@@ -74,21 +73,23 @@ impl DataHeading {
     }
 
     /// A record that cannot be judged, at the place of the data set.
-    fn misjudged(&self, NotJudged { id, source }: NotJudged) -> SimError {
+    fn misjudged(&self, NotJudged { id, source }: NotJudged) -> BenchError {
         match source {
             DiagnosisError::Actuator(source) => self.failed(source),
-            source => SimError::Diagnosis { place: dataset_place(&self.folder).field(id), source },
+            source => {
+                BenchError::Diagnosis { place: dataset_place(&self.folder).field(id), source }
+            }
         }
     }
 
     /// An error of the model or its identification, at the place of the data set.
-    pub(crate) fn failed(&self, source: PreisachError) -> SimError {
+    pub fn failed(&self, source: PreisachError) -> BenchError {
         let place = dataset_place(&self.folder);
         match self.subject() {
             subject @ Subject::Loop { .. } => {
-                SimError::Loop { place, message: subject.error(&source), source }
+                BenchError::Loop { place, message: subject.error(&source), source }
             }
-            _ => SimError::Actuator { place, source },
+            _ => BenchError::Actuator { place, source },
         }
     }
 }
@@ -128,12 +129,12 @@ pub type Compared<'a> = Option<&'a (dyn Fn() + Sync)>;
 /// [`QUASI_STATIC_AMPLITUDE_DEG`].
 ///
 /// # Errors
-/// [`SimError::Actuator`] at the place of the data set.
+/// [`BenchError::Actuator`] at the place of the data set.
 pub fn identify_bench(
     data: &BenchData,
     base: &Settings,
     compared: Compared<'_>,
-) -> Result<BenchIdentification, SimError> {
+) -> Result<BenchIdentification, BenchError> {
     let (deg_per_um, gain_rule) = gain(data, base);
     let of = [&data.title, &data.folder, &data.content_hash];
     let heading = DataHeading { gain_rule: Some(gain_rule), ..DataHeading::new(of, &data.runs) };
@@ -150,12 +151,12 @@ pub fn identify_bench(
 /// set's; zero output stays where it was recorded.
 ///
 /// # Errors
-/// [`SimError::Loop`] at the place of the data set.
+/// [`BenchError::Loop`] at the place of the data set.
 pub fn identify_loops(
     data: &LoopData,
     base: &Settings,
     compared: Compared<'_>,
-) -> Result<BenchIdentification, SimError> {
+) -> Result<BenchIdentification, BenchError> {
     let [input, output] = data.channels.both().map(Channel::label);
     let heading = DataHeading {
         channels: Some(StoredChannels { input, output }),
@@ -170,7 +171,7 @@ pub fn identify_loops(
 }
 
 /// The runs as an identification sees them, with a gain from their outputs.
-pub(crate) fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
+pub fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
     let record = |run: &Run| {
         // a window trains and judges alike; without one all of the run does
         let window = run.entry.window_s.map(|_| run.window());
@@ -200,11 +201,12 @@ fn identified(
     records: Vec<BenchRecord>,
     settings: Settings,
     compared: Compared<'_>,
-) -> Result<BenchIdentification, SimError> {
+) -> Result<BenchIdentification, BenchError> {
     let (rests, mut records): (Vec<_>, Vec<_>) =
         records.into_iter().partition(BenchRecord::is_at_rest);
     let mut switched_on = Vec::new();
-    for record in &mut records {
+    // 0 V is where an amplifier is switched on; of other channels nothing is known
+    for record in records.iter_mut().filter(|_| heading.channels.is_none()) {
         if let Some(from_zero) = record.from_switch_on(settings.range_volt) {
             switched_on.push(Finding::SwitchedOn { id: record.id.clone() });
             *record = from_zero;
@@ -244,7 +246,7 @@ fn identified(
 
 /// Flap angle per displacement of a bench, deg/um, and where it comes from: the data set, else what makes
 /// the widest of the quasi-static records +- [`QUASI_STATIC_AMPLITUDE_DEG`]; 1 if there is no slow loop.
-pub(crate) fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
+pub fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
     if let Some(gain) = data.flap_deg_per_um {
         return (gain, GainRule::DataSet);
     }

@@ -1,7 +1,6 @@
 //! What a person checks at a glance of one record.
 
-use crate::identify::records::plausibility::{self, Line};
-use crate::identify::{BenchRecord, Drive, Finding, SplitRule, Subject, Waveform};
+use preisach_dyn::identify::{BenchRecord, Drive, Finding, SplitRule, Subject, Waveform};
 use rotor_base::{mean_square, rests, significant, wrap_degrees};
 use serde::Serialize;
 use std::ops::Range;
@@ -50,7 +49,7 @@ impl Glance {
         let rested: usize = resting.iter().map(Range::len).sum();
         let moving_s = (samples.len() - rested) as f64 * step_s;
         let periodic = drive.is_periodic();
-        let slope = (!is_constant).then(|| Line::of(record).slope);
+        let slope = (!is_constant).then(|| record.slope_deg_per_volt());
         let is_inverted = slope.is_some_and(|slope| slope < 0.0);
         let turned = |lag: f64| if is_inverted { wrap_degrees(lag - 180.0) } else { lag };
         let is_slow = SplitRule::default().is_quasi_static(&drive);
@@ -65,7 +64,7 @@ impl Glance {
             lag_deg: drive.lag_deg(record).filter(|_| periodic).map(turned),
             rests_s: resting.iter().map(|rest| rest.len() as f64 * step_s).collect(),
             duration_s: samples.len() as f64 * step_s,
-            findings: plausibility::suspicions(record, &drive, is_slow),
+            findings: record.suspicions(is_slow),
         }
     }
 

@@ -1,13 +1,13 @@
 //! What `hhc identify` prints.
 
 use super::{BenchIdentification, PickReason};
-use crate::files::significant;
-use crate::output::{Printable, Sheet, table};
-use crate::stored_actuator::{GainRule, StoredChannels, StoredFit};
+use crate::stored::{GainRule, StoredChannels, StoredFit};
+use measured_data::significant;
 use preisach_dyn::identify::{
     Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
     Severity, Subject,
 };
+use report_page::{Sheet, table};
 use serde::Serialize;
 
 impl BenchIdentification {
@@ -195,8 +195,9 @@ const MOST_RUNS: usize = 6;
 /// Findings on one screen.
 const MOST_FINDINGS: usize = 4;
 
-impl Printable for IdentifyResult {
-    fn text(&self) -> String {
+impl IdentifyResult {
+    /// What a person wants to see first.
+    pub fn text(&self) -> String {
         let mut screen = Sheet::default();
         screen.line(&self.title);
         screen.labelled("Model", &format!("{}, {}", self.model, self.picked()));
@@ -241,7 +242,8 @@ impl Printable for IdentifyResult {
         screen.screen()
     }
 
-    fn details(&self) -> String {
+    /// Every table.
+    pub fn details(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
         sheet.line(format_args!("Data   {}\nSplit  {}", self.dataset, self.split));
@@ -411,7 +413,7 @@ fn failures(models: &[ModelLine]) -> Vec<String> {
 /// How the model fits the runs given.
 ///
 /// `input` heads the column of the input's amplitude.
-pub(crate) fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> String {
+pub fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> String {
     table(
         &[
             "run",

@@ -1,17 +1,17 @@
 //! `hhc identify` of reversal curves: a measured family of first-order reversal curves in, a static
 //! model out.
 
-use crate::SimError;
+use crate::BenchError;
 use crate::figures::{density_csv, diagram_csv};
-use crate::files::{Channel, Channels, CurveData};
 use crate::identification::dataset_place;
-use crate::output::{Printable, Sheet, table};
-use crate::stored_actuator::{StoredActuator, StoredChannels, StoredKind};
+use crate::stored::{StoredActuator, StoredChannels, StoredKind};
+use measured_data::{Channel, Channels, CurveData};
 use preisach_dyn::forc::{
     CalibrationPoint, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings, diagram, fit, held_out,
 };
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration};
+use report_page::{Sheet, table};
 use serde::Serialize;
 
 /// Every so many curves one is held out to judge the fit; the stored model is fitted to all.
@@ -35,9 +35,9 @@ pub struct CurveIdentification {
 /// readings, density by constrained least squares, every fourth curve held out once to judge it.
 ///
 /// # Errors
-/// [`SimError::Actuator`] at the place of the data set.
-pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, SimError> {
-    let fail = |source| SimError::Actuator { place: dataset_place(&data.folder), source };
+/// [`BenchError::Actuator`] at the place of the data set.
+pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, BenchError> {
+    let fail = |source| BenchError::Actuator { place: dataset_place(&data.folder), source };
     let all: Vec<_> = data.runs.iter().flat_map(|run| &run.curves).collect();
     let readings: Vec<CalibrationPoint> = all
         .iter()
@@ -99,10 +99,10 @@ impl CurveIdentification {
     /// Names and texts of the figures' tables: FORC diagram, density, curves against the model.
     ///
     /// # Errors
-    /// [`SimError::Actuator`] if the family is too small for a diagram.
-    pub fn figure_files(&self) -> Result<Vec<(String, String)>, SimError> {
+    /// [`BenchError::Actuator`] if the family is too small for a diagram.
+    pub fn figure_files(&self) -> Result<Vec<(String, String)>, BenchError> {
         let fail =
-            |source| SimError::Actuator { place: dataset_place(&self.result.dataset), source };
+            |source| BenchError::Actuator { place: dataset_place(&self.result.dataset), source };
         let points = diagram(&self.data, SMOOTHING_FACTOR).map_err(fail)?;
         let (input, unit) = (&self.result.input, format!("_{}", self.channels.output.unit.symbol));
         let model = &self.fit.model;
@@ -146,8 +146,9 @@ pub struct CurvesResult {
     pub written_to: Option<String>,
 }
 
-impl Printable for CurvesResult {
-    fn text(&self) -> String {
+impl CurvesResult {
+    /// What a person wants to see first.
+    pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("{}", self.title));
         sheet.line(format_args!("Data   {}: {} against {}", self.dataset, self.output, self.input));

@@ -1,28 +1,14 @@
 //! Which of the fitted models is used.
 
 use super::{BenchIdentification, dataset_place};
-use crate::SimError;
-use crate::choices::spelt;
-use crate::problem::{Fault, Problem};
+use crate::BenchError;
 use actuator_gap::judged;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use measured_data::problem::{Fault, Problem};
 use preisach_dyn::identify::{Estimate, Family, ModelRow, Order, Settings};
 use serde::Serialize;
 
 /// The family of models that `hhc identify` writes; none leaves it to cross-validation.
 pub type ModelChoice = Option<Family>;
-
-/// Reads a choice of models from the command line.
-pub(crate) fn model_parser() -> impl TypedValueParser<Value = ModelChoice> {
-    let spelling = |family: Family| spelt(&format!("{family:?}"), '-');
-    let best = PossibleValue::new("best")
-        .help("the one that cross-validation over the training runs chooses");
-    // the parser keeps its names as long as the program runs
-    let families =
-        Family::ALL.map(|family| PossibleValue::new(&*spelling(family).leak()).help(family.name()));
-    PossibleValuesParser::new(std::iter::once(best).chain(families))
-        .map(move |given| Family::ALL.into_iter().find(|family| spelling(*family) == given))
-}
 
 /// Why a model is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -65,9 +51,9 @@ impl BenchIdentification {
     /// Nothing happens without a [`comparison`](Self::comparison).
     ///
     /// # Errors
-    /// [`SimError::Data`] if the model asked for could not be fitted, with the reason and the
+    /// [`BenchError::Data`] if the model asked for could not be fitted, with the reason and the
     /// models that could; those of [`super::identify_bench`].
-    pub fn pick(&mut self, choice: ModelChoice) -> Result<(), SimError> {
+    pub fn pick(&mut self, choice: ModelChoice) -> Result<(), BenchError> {
         let Some(table) = &self.comparison else { return Ok(()) };
         let chosen = match choice {
             Some(family) => table.rows.iter().find(|row| row.family == family),

@@ -1,0 +1,27 @@
+//! What a bench says of an actuator: measured records in, an identified model, its tables, figures and page out.
+//!
+//! | idea | module |
+//! |---|---|
+//! | identification from a bench or from loops of any two channels, the model chosen | [`identification`] |
+//! | what a person checks at a glance of one record | [`Glance`] |
+//! | identification from reversal curves | [`curves`] |
+//! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
+//! | tables of the figures, for any plotting program | [`figures`] |
+
+pub mod curves;
+mod error;
+pub mod figures;
+mod glance;
+pub mod identification;
+pub mod stored;
+
+pub use error::BenchError;
+pub use glance::Glance;
+
+/// Version of the program, part of every actuator file.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;
