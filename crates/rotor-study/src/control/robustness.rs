@@ -10,8 +10,8 @@ use crate::plant::{Answered, Answers, HUB_OUTPUTS, RotorPlant, hub_outputs};
 use crate::rotor::TrimmedRotor;
 use crate::series::scaled;
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlRun, Controller, Measurement, Plant, RunError, TMatrix,
-    identify_t,
+    AdaptiveSettings, ControlError, ControlRun, Controller, EstimatorSettings, Measurement, Plant,
+    RunError, TMatrix, identify_t,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -297,7 +297,10 @@ impl Flight<'_> {
         let answers = Disturbed::new(disturbance, self.rms, seed);
         let way = match self.set.t_policy(choice, self.step_volt.clone()) {
             Controller::Adaptive(settings) => {
-                Controller::Adaptive(AdaptiveSettings { noise: answers.noise, ..settings })
+                let share = (answers.noise > 0.0).then(|| answers.noise / self.rms);
+                let noise_share = share.or(settings.estimator.noise_share);
+                let estimator = EstimatorSettings { noise_share, ..settings.estimator };
+                Controller::Adaptive(AdaptiveSettings { estimator, ..settings })
             }
             way => way,
         };
