@@ -73,6 +73,53 @@ pub struct MarginLine {
     pub flap_overshoot_deg: Vec<f64>,
 }
 
+impl RobustnessCell {
+    /// Name and value of every field, as of a table without loss.
+    pub fn fields(&self) -> [(&'static str, String); 13] {
+        let d = &self.disturbance;
+        let ratio = |value: f64| format!("{value:.5}");
+        [
+            ("per_rev", self.harmonic.to_string()),
+            ("controller", self.controller.clone()),
+            ("noise_percent", d.noise_percent.to_string()),
+            ("t_gain", d.t_gain.to_string()),
+            ("t_phase_deg", d.t_phase_deg.to_string()),
+            ("t_flap", d.t_flap.map_or_else(String::new, |flap| flap.to_string())),
+            ("drift_percent", d.drift_percent.to_string()),
+            ("cycles", self.cycles.to_string()),
+            ("draws", self.draws.to_string()),
+            ("end_j_over_j0", ratio(self.end_ratio)),
+            ("end_best", ratio(self.end_range[0])),
+            ("end_worst", ratio(self.end_range[1])),
+            ("peak_j_over_j0", ratio(self.peak_ratio)),
+        ]
+    }
+
+    /// `J / J0` at the end, with its spread where there is noise, and its peak, for people.
+    pub fn summary(&self) -> String {
+        let [least, most] = self.end_range;
+        let spread =
+            if self.draws > 1 { format!(" ({least:.3} to {most:.3})") } else { String::new() };
+        format!("{:.3}{spread}, {:.2}", self.end_ratio, self.peak_ratio)
+    }
+}
+
+impl MarginLine {
+    /// Harmonic, condition, phase and gain of divergence, phases of overshoot, for people.
+    pub fn cells(&self) -> [String; 6] {
+        let flaps: Vec<String> =
+            self.flap_overshoot_deg.iter().map(|deg| format!("{deg:.0}")).collect();
+        [
+            format!("{}/rev", self.harmonic),
+            format!("{:.1}", self.condition),
+            format!("{:.0}", self.common_phase_deg),
+            format!("{:.1}", self.common_gain),
+            format!("{:.0}", self.common_overshoot_deg),
+            flaps.join(", "),
+        ]
+    }
+}
+
 const NOISE_PERCENT: [f64; 3] = [1.0, 3.0, 10.0];
 const T_GAINS: [f64; 2] = [0.5, 2.0];
 const T_PHASES_DEG: [f64; 6] = [-80.0, -60.0, -30.0, 30.0, 60.0, 80.0];

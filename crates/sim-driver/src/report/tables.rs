@@ -1,6 +1,5 @@
 //! The tables of a report, and the histories as CSV.
 
-use crate::output::csv_of;
 use crate::results::{ControlRecord, RunResult, flap_name, set_name};
 use report_page::Section;
 use rotor_base::uniform_azimuths_rad;
@@ -68,14 +67,10 @@ pub fn sensitivity_csv(harmonics: &[Vec<usize>], rows: &[SensitivityLine]) -> St
 /// Controllers of the robustness maps, in the order of their cells.
 const CONTROLLERS: [&str; 3] = ["fixed T", "adaptive", "adaptive, told"];
 
-/// Cells of this version: those of an older one hold no flights.
-fn flown(result: &RunResult) -> Vec<&RobustnessCell> {
-    result.robustness.iter().filter(|cell| cell.cycles > 0).collect()
-}
-
 /// How wrong T may be, and `J / J0` under every disturbance, a column for each controller; none without flights.
 pub(super) fn robustness(result: &RunResult) -> Vec<Section> {
-    let cells = flown(result);
+    // cells of an older version hold no flights
+    let cells: Vec<_> = result.robustness.iter().filter(|cell| cell.cycles > 0).collect();
     if cells.is_empty() {
         return Vec::new();
     }
@@ -88,12 +83,7 @@ pub(super) fn robustness(result: &RunResult) -> Vec<Section> {
             format!("{} / {} deg{flap}", d.t_gain, d.t_phase_deg),
             d.drift_percent.to_string(),
         ];
-        row.extend(each.iter().map(|cell| {
-            let [least, most] = cell.end_range;
-            let spread =
-                if cell.draws > 1 { format!(" ({least:.3} to {most:.3})") } else { String::new() };
-            format!("{:.3}{spread}, {:.2}", cell.end_ratio, cell.peak_ratio)
-        }));
+        row.extend(each.iter().map(|cell| cell.summary()));
         row
     });
     let head = ["per rev", "noise %", "T error", "drift %"].into_iter().chain(CONTROLLERS);
@@ -107,17 +97,6 @@ pub(super) fn robustness(result: &RunResult) -> Vec<Section> {
         header: head.map(str::to_owned).collect(),
         rows: rows.collect(),
     };
-    let margins = result.margins.iter().map(|line| {
-        let flaps = line.flap_overshoot_deg.iter().map(|deg| format!("{deg:.0}"));
-        vec![
-            format!("{}/rev", line.harmonic),
-            format!("{:.1}", line.condition),
-            format!("{:.0}", line.common_phase_deg),
-            format!("{:.1}", line.common_gain),
-            format!("{:.0}", line.common_overshoot_deg),
-            flaps.collect::<Vec<_>>().join(", "),
-        ]
-    });
     let header = [
         "per rev",
         "condition",
@@ -130,31 +109,16 @@ pub(super) fn robustness(result: &RunResult) -> Vec<Section> {
         title: "How wrong T may be".to_owned(),
         text: "Least phase error of T common to all flaps, and gain of the rotor over it, at which a loop without limits diverges (radius of (C.14) with half a step a cycle); then the least phase error from which J rises above J0 on the way, of all flaps and of one alone, root to tip.".to_owned(),
         header: header.map(str::to_owned).to_vec(),
-        rows: margins.collect(),
+        rows: result.margins.iter().map(|line| line.cells().to_vec()).collect(),
     };
     vec![margins, flights]
 }
 
 /// The cells of the robustness maps as CSV text.
 pub fn robustness_csv(cells: &[RobustnessCell]) -> String {
-    csv_of(
-        cells,
-        &[
-            ("per_rev", &|l| l.harmonic.to_string()),
-            ("controller", &|l| l.controller.clone()),
-            ("noise_percent", &|l| l.disturbance.noise_percent.to_string()),
-            ("t_gain", &|l| l.disturbance.t_gain.to_string()),
-            ("t_phase_deg", &|l| l.disturbance.t_phase_deg.to_string()),
-            ("t_flap", &|l| l.disturbance.t_flap.map_or_else(String::new, |f| f.to_string())),
-            ("drift_percent", &|l| l.disturbance.drift_percent.to_string()),
-            ("cycles", &|l| l.cycles.to_string()),
-            ("draws", &|l| l.draws.to_string()),
-            ("end_j_over_j0", &|l| format!("{:.5}", l.end_ratio)),
-            ("end_best", &|l| format!("{:.5}", l.end_range[0])),
-            ("end_worst", &|l| format!("{:.5}", l.end_range[1])),
-            ("peak_j_over_j0", &|l| format!("{:.5}", l.peak_ratio)),
-        ],
-    )
+    let header = RobustnessCell::default().fields().map(|(name, _)| name).join(",");
+    let rows = cells.iter().map(|cell| cell.fields().map(|(_, value)| value).join(",") + "\n");
+    header + "\n" + &rows.collect::<String>()
 }
 
 /// Flap and voltage histories of every study as CSV text.
