@@ -73,7 +73,7 @@ impl FeedbackController {
                     error::check_positive("voltage step of the T matrix (volt)", step)?;
                 }
             }
-            Controller::Adaptive(settings) => settings.check()?,
+            Controller::Adaptive(settings) => settings.estimator.check()?,
         }
         Ok(Self { controller, ..self })
     }
@@ -150,7 +150,7 @@ impl FeedbackController {
         weighting: Weighting<'_>,
     ) -> Result<ControlRun, RunError<P::Error>> {
         let here = taken.steps.last().unwrap_or(start);
-        let model = Sensitivity::new(&self.controller, &self.law, here);
+        let model = Sensitivity::new(&self.controller, &self.law, here)?;
         let method = Method { settings: &self.settings, law: &self.law, weighting };
         Iteration::new(plant, method, model, start, taken).run()
     }

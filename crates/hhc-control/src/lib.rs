@@ -60,6 +60,7 @@ mod reduction;
 mod root;
 mod sensitivity;
 mod settings;
+mod stepwise;
 mod stroke;
 
 pub use bias::{BiasSolution, BiasSolver};
@@ -69,13 +70,17 @@ pub use effort::StrokeStatus;
 pub use error::{ControlError, RunError};
 pub use feedback::FeedbackController;
 pub use identify::identify_t;
-pub use law::{FeedbackLaw, LagLoss, OperatingPoint, TMatrix, lag_loss};
+pub use law::{FeedbackLaw, LagLoss, OperatingPoint, TMargins, TMatrix, lag_loss};
 pub use layout::{ControlLayout, lag_deg};
 pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
 pub use plant::{LinearPlant, Measurement, Plant};
 pub use record::{AllowedIncrease, ControlRun, ControlStep, LoopEnd, StopReason};
 pub use sensitivity::{AdaptiveSettings, Controller};
 pub use settings::{Acceptance, FeedbackSettings};
+pub use stepwise::{
+    CycleController, EstimatorSettings, HarmonicAnalyser, LoadEstimator, Observed,
+    RelaxedController, RelaxedSettings,
+};
 pub use stroke::{EffortTrial, StrokeLimitedRun};
 
 #[cfg(doctest)]

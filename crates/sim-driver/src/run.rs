@@ -14,7 +14,8 @@ use rotor_response::{StationAirloads, StationLoads, TipMotion};
 use rotor_study::{
     CURVE_AZIMUTHS, ControlStudy, Drives, HubLoads, Setting, StabilityLine, StudyError,
     TrimmedRotor, VortexComparison, compare_vortices, computed_curves, control_all,
-    each_unlike_blade, forecasts, station_lines, unlike_lines, wake_status, wake_warnings,
+    each_unlike_blade, forecasts, station_lines, unlike_lines, unlike_warnings, wake_status,
+    wake_warnings,
 };
 use std::sync::Arc;
 use trim::TrimSolution;
@@ -127,6 +128,7 @@ pub fn run_trimmed(
     let baseline = HubLoads::from_parts(found.rotor.hub.harmonic(loaded.case.rotor.blades));
     let setting = Setting::of_case(&loaded.case, &baseline);
     let unlike_blades = unlike_lines(&loaded.case, &trimmed, &studies).map_err(failed)?;
+    warnings.extend(unlike_warnings(&unlike_blades, &studies));
     // flaps at rest stand first; with every blade alike there is no line
     let mean = unlike_blades.first().map_or_else(|| found.rotor.hub.mean(), |rest| rest.mean);
     let result = RunResult {

@@ -59,7 +59,7 @@ impl<P: Plant> Iteration<'_, P> {
             search.measurements += 1;
             let there =
                 OperatingPoint { control_volt: &control_volt, outputs: &measurement.outputs };
-            self.model.observe(there);
+            self.model.observe(there)?;
             let cost = law.cost(&measurement, &control_volt, rho);
             let increase = (cost.total() - self.here.cost.total()) / start_cost;
             let is_lower = increase <= COST_ROUNDING;

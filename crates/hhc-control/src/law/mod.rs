@@ -1,10 +1,12 @@
 //! The control law, eq. (10).
 
 mod lag;
+mod margins;
 mod spectrum;
 mod t_matrix;
 
 pub use lag::{LagLoss, lag_loss};
+pub use margins::TMargins;
 pub use t_matrix::TMatrix;
 
 use crate::{ControlError, LoadWeights, error};

@@ -2,6 +2,7 @@
 
 use crate::{ControlError, error};
 use nalgebra::{DMatrix, DVector};
+use std::ops::Range;
 
 /// Sensitivity of the loads to the control voltages, `T = dZ/du`.
 ///
@@ -33,6 +34,12 @@ impl TMatrix {
     pub(crate) fn from_matrix(matrix: DMatrix<f64>) -> Result<Self, ControlError> {
         error::check_vector("T matrix (1/V)", matrix.as_slice(), matrix.len())?;
         Ok(Self { matrix })
+    }
+
+    /// Takes over the columns of a matrix behind its first one, times a factor, in place.
+    pub(crate) fn set_scaled(&mut self, theta: &DMatrix<f64>, factor: f64) {
+        let columns = theta.columns_range(1..);
+        self.matrix.zip_apply(&columns, |element, scaled| *element = factor * scaled);
     }
 
     /// Number of loads (rows).
@@ -88,13 +95,26 @@ impl TMatrix {
     /// # Errors
     /// [`ControlError::OutOfRange`] for an odd number of controls, [`ControlError::NotFinite`].
     pub fn turned(&self, gain: f64, phase_rad: f64) -> Result<Self, ControlError> {
+        self.turned_within(0..self.controls(), gain, phase_rad)
+    }
+
+    /// The same for the pairs of some controls alone, as of one flap; the others stay.
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for controls that are not whole pairs of T, [`ControlError::NotFinite`].
+    pub fn turned_within(
+        &self,
+        controls: Range<usize>,
+        gain: f64,
+        phase_rad: f64,
+    ) -> Result<Self, ControlError> {
         error::check_vector("gain and phase of T", &[gain, phase_rad], 2)?;
-        let controls = self.controls();
-        let is_paired = controls.is_multiple_of(2);
-        error::check_range(is_paired, "controls of the T matrix", controls as f64, "pairs")?;
+        let (what, count) = ("controls of the T matrix", self.controls());
+        let is_paired = [controls.start, controls.end, count].iter().all(|c| c.is_multiple_of(2));
+        error::check_range(is_paired && controls.end <= count, what, count as f64, "pairs")?;
         let (sin, cos) = phase_rad.sin_cos();
         let mut matrix = self.matrix.clone();
-        for c in (0..controls).step_by(2) {
+        for c in controls.step_by(2) {
             let (cosine, sine) = (self.matrix.column(c), self.matrix.column(c + 1));
             matrix.set_column(c, &((cosine * cos + sine * sin) * gain));
             matrix.set_column(c + 1, &((sine * cos - cosine * sin) * gain));

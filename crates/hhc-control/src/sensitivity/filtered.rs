@@ -1,15 +1,37 @@
 //! T followed by a Kalman filter on every measured pair.
 
-use super::kalman::Kalman;
-use super::{AdaptiveSettings, Counts, Verified};
-use crate::{ControlStep, FeedbackLaw, Plant, RunError};
+use super::{Counts, Verified};
+use crate::stepwise::{EstimatorSettings, LoadEstimator};
+use crate::{ControlError, ControlStep, FeedbackLaw, OperatingPoint, Plant, RunError};
 
+/// Settings of the adaptive controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AdaptiveSettings {
+    /// How T and Z0 are estimated.
+    pub estimator: EstimatorSettings,
+    /// Times a step may be rejected in full before the run ends: after the first, T has learnt from the
+    /// rejected pairs; if it still asks for much the same, each control is moved by a
+    /// twentieth of full scale to excite it.
+    pub probes: u32,
+}
+
+impl AdaptiveSettings {
+    /// Settings for a plant that answers exactly, with actuators of a given full scale, V.
+    pub fn of_full_scale(full_scale_volt: f64) -> Self {
+        Self { estimator: EstimatorSettings::of_exact_plant(full_scale_volt), probes: 4 }
+    }
+}
+
+/// Part of full scale by which a control is moved to excite it.
+const PROBE: f64 = 0.05;
 /// Times that T may be verified where the loop would end.
 const VERIFICATIONS: u32 = 10;
 
 /// A filtered T, and the probes that excite it.
 pub(super) struct Filtered {
-    pub(super) filter: Kalman,
+    pub(super) filter: LoadEstimator,
+    /// Size of a move that excites a control, V.
+    probe_volt: f64,
     probes_left: u32,
     /// Target of the last step that was rejected in full.
     rejected_volt: Option<Vec<f64>>,
@@ -19,14 +41,20 @@ pub(super) struct Filtered {
 }
 
 impl Filtered {
-    pub(super) fn new(settings: &AdaptiveSettings, law: &FeedbackLaw, start: &ControlStep) -> Self {
-        Self {
-            filter: Kalman::new(settings, law, start),
-            probes_left: settings.probes,
+    pub(super) fn new(
+        settings: &AdaptiveSettings,
+        law: &FeedbackLaw,
+        start: &ControlStep,
+    ) -> Result<Self, ControlError> {
+        let AdaptiveSettings { estimator, probes } = settings;
+        Ok(Self {
+            filter: LoadEstimator::new(estimator, law.t(), start.point())?,
+            probe_volt: PROBE * estimator.full_scale_volt,
+            probes_left: *probes,
             rejected_volt: None,
             probed_at: None,
             verifications_left: VERIFICATIONS,
-        }
+        })
     }
 
     /// After a step that was rejected in full: whether another one is worth computing. The rejected measurements may
@@ -86,7 +114,7 @@ impl Filtered {
         counts: &mut Counts,
     ) -> Result<(), RunError<P::Error>> {
         counts.identifications += 1;
-        let probe_volt = self.filter.probe_volt();
+        let probe_volt = self.probe_volt;
         for control in 0..target_volt.len() {
             let mut moved = here.control_volt.clone();
             let side = if target_volt[control] < moved[control] { -1.0 } else { 1.0 };
@@ -99,10 +127,11 @@ impl Filtered {
             }
             let measurement = plant.measure(&moved).map_err(RunError::plant("measured", &moved))?;
             counts.measurements += 1;
-            self.filter.observe(&moved, &measurement.outputs);
+            let pair = OperatingPoint { control_volt: &moved, outputs: &measurement.outputs };
+            self.filter.observe(pair)?;
         }
         // the last pair is that of the state itself
-        self.filter.observe(&here.control_volt, &here.measurement.outputs);
+        self.filter.observe(here.point())?;
         Ok(())
     }
 }

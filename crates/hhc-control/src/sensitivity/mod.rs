@@ -1,13 +1,12 @@
 //! How the sensitivity T of the outputs to the controls is held: constant, identified again, or filtered.
 
 mod filtered;
-mod kalman;
 mod linearised;
 
 use crate::identify::differences;
 use crate::{ControlError, ControlStep, FeedbackLaw, OperatingPoint, Plant, RunError, TMatrix};
+pub use filtered::AdaptiveSettings;
 use filtered::Filtered;
-pub use kalman::AdaptiveSettings;
 use linearised::Linearised;
 use nalgebra::DVector;
 
@@ -110,7 +109,11 @@ pub(crate) enum Verified {
 }
 
 impl<'a> Sensitivity<'a> {
-    pub(crate) fn new(controller: &'a Controller, law: &FeedbackLaw, start: &ControlStep) -> Self {
+    pub(crate) fn new(
+        controller: &'a Controller,
+        law: &FeedbackLaw,
+        start: &ControlStep,
+    ) -> Result<Self, ControlError> {
         let policy = match controller {
             Controller::Global => Policy::Held { step_volt: &[], renewals_left: 0 },
             Controller::Renewed { step_volt, renewals } => {
@@ -120,10 +123,10 @@ impl<'a> Sensitivity<'a> {
                 Policy::Linearised(Linearised::new(step_volt, start.control_volt.len()))
             }
             Controller::Adaptive(settings) => {
-                Policy::Filtered(Box::new(Filtered::new(settings, law, start)))
+                Policy::Filtered(Box::new(Filtered::new(settings, law, start)?))
             }
         };
-        Self { law: law.clone(), policy, counts: Counts::default() }
+        Ok(Self { law: law.clone(), policy, counts: Counts::default() })
     }
 
     /// Brings T up to date before a step from a measured state.
@@ -138,7 +141,7 @@ impl<'a> Sensitivity<'a> {
                 let found = policy.identify(plant, here)?;
                 self.take_up(found)?;
             }
-            Policy::Filtered(policy) => self.law = self.law.with_t(&policy.filter.t()?)?,
+            Policy::Filtered(policy) => self.law = self.law.with_t(policy.filter.t())?,
         }
         Ok(())
     }
@@ -178,12 +181,15 @@ impl<'a> Sensitivity<'a> {
     }
 
     /// Takes note of a measured pair.
-    pub(crate) fn observe(&mut self, at: OperatingPoint<'_>) {
+    pub(crate) fn observe(&mut self, at: OperatingPoint<'_>) -> Result<(), ControlError> {
         match &mut self.policy {
             Policy::Held { .. } => {}
             Policy::Linearised(policy) => policy.observe(at),
-            Policy::Filtered(policy) => policy.filter.observe(at.control_volt, at.outputs),
+            Policy::Filtered(policy) => {
+                policy.filter.observe(at)?;
+            }
         }
+        Ok(())
     }
 
     /// Right-hand side of the law at a state, from the outputs that it aims from.
@@ -198,7 +204,11 @@ impl<'a> Sensitivity<'a> {
     /// The outputs that the law aims from: those measured, or the filter's estimate.
     pub(crate) fn seen_outputs(&self, at: OperatingPoint<'_>) -> Vec<f64> {
         match &self.policy {
-            Policy::Filtered(policy) => policy.filter.loads_at(at.control_volt),
+            Policy::Filtered(policy) => {
+                let mut loads = at.outputs.to_vec();
+                policy.filter.loads_at(at.control_volt, &mut loads);
+                loads
+            }
             _ => at.outputs.to_vec(),
         }
     }

@@ -2,8 +2,8 @@
 
 use crate::plants::{Problem, RayleighPlant, as_t, relative_error};
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlLayout, ControlRun, Controller, FeedbackController,
-    FeedbackSettings, LoadWeights, RunError, StopReason, identify_t, lag_loss,
+    AdaptiveSettings, ControlError, ControlLayout, ControlRun, Controller, EstimatorSettings,
+    FeedbackController, FeedbackSettings, LoadWeights, RunError, StopReason, identify_t, lag_loss,
 };
 use nalgebra::{DMatrix, DVector};
 
@@ -156,13 +156,15 @@ fn settings_out_of_range_are_refused() {
     let problem = ill_conditioned();
     let controller =
         || FeedbackController::new(&as_t(&problem.t), &LoadWeights::Identity, settings()).unwrap();
-    let base = AdaptiveSettings::of_full_scale(85.0);
+    let base = EstimatorSettings::of_exact_plant(85.0);
     for bad in [
-        AdaptiveSettings { full_scale_volt: 0.0, ..base.clone() },
-        AdaptiveSettings { noise: -1.0, ..base.clone() },
-        AdaptiveSettings { uncertainty: 0.0, ..base.clone() },
-        AdaptiveSettings { drift: f64::NAN, ..base },
+        EstimatorSettings { full_scale_volt: 0.0, ..base.clone() },
+        EstimatorSettings { noise_share: Some(0.0), ..base.clone() },
+        EstimatorSettings { uncertainty: 0.0, ..base.clone() },
+        EstimatorSettings { baseline_drift: 0.0, ..base.clone() },
+        EstimatorSettings { drift: f64::NAN, ..base },
     ] {
+        let bad = AdaptiveSettings { estimator: bad, probes: 4 };
         assert!(controller().with_controller(Controller::Adaptive(bad)).is_err());
     }
     for step_volt in [vec![1.0; 3], vec![0.0; 4]] {

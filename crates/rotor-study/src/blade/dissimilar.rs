@@ -6,7 +6,7 @@ use crate::case::Case;
 use crate::control::ControlStudy;
 use crate::error::StudyError;
 use crate::flaps::FlapMotion;
-use crate::loads::HubLoads;
+use crate::loads::{HubLoads, Setting, loads_cost};
 use crate::rotor::{TrimmedRotor, UnlikeSolver};
 use rotor_base::HarmonicSeries;
 use rotor_response::ResponseError;
@@ -21,6 +21,12 @@ pub struct UnlikeLine {
     pub mean: [f64; 6],
     /// Loads at 1, 2, 3 ... per rev.
     pub per_rev: Vec<HubLoads>,
+    /// `J` of these loads at the blade number per rev, over that with flaps at rest.
+    #[serde(default)]
+    pub cost_ratio: f64,
+    /// `J` of those at the other harmonics below twice the blade number, over the same: what blades that are alike cancel.
+    #[serde(default)]
+    pub other_cost_ratio: f64,
 }
 
 /// One blade unlike the rest in the inflow and at the controls of the trimmed rotor, flaps at rest.
@@ -92,13 +98,90 @@ pub fn unlike_lines(
         source,
     };
     let mut solvers = trimmed.unlike_solvers(case)?;
+    let blades = case.rotor.blades;
+    let baseline = HubLoads::from_parts(trimmed.trim().rotor.hub.harmonic(blades));
+    let weights = Setting::of_case(case, &baseline).load_weights();
+    let mut at_rest = None;
     std::iter::once(rest)
         .chain(controlled)
         .map(|(flaps, angles, about)| {
             let hub = trimmed.unlike_hub_loads(&mut solvers, &angles, about).map_err(blame)?;
-            let per_rev = 1..=2 * case.rotor.blades;
-            let per_rev = per_rev.map(|n| HubLoads::from_parts(hub.harmonic(n))).collect();
-            Ok(UnlikeLine { flaps, mean: hub.mean(), per_rev })
+            let cost = |n: usize| loads_cost(&weights, &hub.harmonic(n));
+            let own = cost(blades);
+            let others = (1..2 * blades).filter(|&n| n != blades).map(cost).sum::<f64>();
+            let before = *at_rest.get_or_insert(own);
+            let share = |cost: f64| if before > 0.0 { cost / before } else { 0.0 };
+            let per_rev = (1..=2 * blades).map(|n| HubLoads::from_parts(hub.harmonic(n))).collect();
+            Ok(UnlikeLine {
+                flaps,
+                mean: hub.mean(),
+                per_rev,
+                cost_ratio: share(own),
+                other_cost_ratio: share(others),
+            })
         })
         .collect()
+}
+
+/// What a reader of the control table must know where blades are dissimilar: the table is of the rotor with like blades.
+pub fn unlike_warnings(lines: &[UnlikeLine], studies: &[ControlStudy]) -> Vec<String> {
+    let Some((rest, controlled)) = lines.split_first() else { return Vec::new() };
+    let said = |(line, study): (&UnlikeLine, &ControlStudy)| {
+        let like = 1.0 - 0.01 * study.reduction_percent();
+        format!(
+            "control.harmonics: {}: J/J0 is {:.3} with the dissimilar blades of the case; the control is found, and its table is, with like blades ({like:.3}). J of the other harmonics over J0: {:.3}, {:.3} without control",
+            line.flaps, line.cost_ratio, line.other_cost_ratio, rest.other_cost_ratio
+        )
+    };
+    controlled.iter().zip(studies).map(said).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{ControlActuator, DissimilarBlade};
+    use crate::control::{Drives, control_all};
+
+    /// One blade whose flaps are dead: the control found with like blades leaves more, and it is said.
+    #[test]
+    fn the_cost_of_a_rotor_with_dissimilar_blades_is_its_own() {
+        let mut case = Case::default();
+        case.control.harmonics = vec![vec![3]];
+        case.control.actuators = vec![ControlActuator::Ideal];
+        let rotor = TrimmedRotor::new(&case, None).unwrap();
+        let drives = Drives::new(&case, None).unwrap();
+        let studies = control_all(&case, &rotor, &drives, &|| ()).unwrap();
+        let like = studies[0].j_after / studies[0].j_before;
+        for (flap_motion, is_dead) in [(1.0, false), (0.0, true)] {
+            case.rotor.dissimilar_blades =
+                vec![DissimilarBlade { blade: 3, flap_motion, ..DissimilarBlade::default() }];
+            let lines = unlike_lines(&case, &rotor, &studies).unwrap();
+            let [rest, controlled] = &lines[..] else { panic!("{lines:?}") };
+            assert!((rest.cost_ratio - 1.0).abs() < 1e-12);
+            let told = unlike_warnings(&lines, &studies);
+            println!(
+                "{like:.4} {:.4} {:.4} {told:?}",
+                controlled.cost_ratio, controlled.other_cost_ratio
+            );
+            if is_dead {
+                assert!(controlled.cost_ratio > like + 0.05 && controlled.other_cost_ratio > 0.05);
+                let both = [format!("{:.3} with", controlled.cost_ratio), format!("({like:.3})")];
+                assert!(both.iter().all(|text| told[0].contains(text)), "{told:?}");
+            } else {
+                assert!((controlled.cost_ratio - like).abs() < 1e-3, "{}", controlled.cost_ratio);
+                assert!(controlled.other_cost_ratio < 1e-6);
+            }
+        }
+    }
+
+    /// Control at 1/rev is warned of, at other harmonics not.
+    #[test]
+    fn control_at_the_pilots_harmonic_is_warned_of() {
+        let warned = |harmonics: Vec<usize>| {
+            let mut case = Case::default();
+            case.control.harmonics = vec![harmonics];
+            case.value_warnings().iter().any(|w| w.field == "control.harmonics")
+        };
+        assert!(warned(vec![1, 3]) && !warned(vec![2, 3]));
+    }
 }

@@ -6,7 +6,9 @@ mod mean_loads;
 mod modes;
 mod stability;
 
-pub use dissimilar::{UnlikeBladeLine, UnlikeLine, each_unlike_blade, unlike_lines};
+pub use dissimilar::{
+    UnlikeBladeLine, UnlikeLine, each_unlike_blade, unlike_lines, unlike_warnings,
+};
 pub use loads::{LoadLine, MomentLine, StationLine, station_lines};
 pub use mean_loads::MeanLoads;
 pub use modes::{

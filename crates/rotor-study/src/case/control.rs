@@ -313,7 +313,7 @@ section! {
             ControlActuator::Ignored,
             ControlActuator::Hysteretic,
         ], Any, "", "";
-        /// Full-scale voltage: bias; bias and amplitude stay inside `actuator.range_V`.
+        /// Bias of the ideal actuator, and where the search for that of the real one starts, which centres its flap; bias and amplitude stay inside `actuator.range_V`.
         pub bias_volt as "bias_V": f64 = 65.0, Rule("inside `range_V`"), "V", "";
         /// Full-scale voltage: amplitude.
         pub amplitude_volt as "amplitude_V": f64 = 85.0, UpTo(f64::MAX), "V", "full scale is 85 V about 65 V";

@@ -6,7 +6,7 @@ use crate::control::study::ControlStudy;
 use crate::error::StudyError;
 use crate::flaps::{FlapDrive, FlapMotion, PlantError};
 use crate::loads::loads_cost;
-use crate::plant::{Answered, Linearised, PlantState, RotorPlant};
+use crate::plant::{LinearisedPlant, PlantState, RotorPlant};
 use crate::series::{scaled, times};
 use hhc_control::{Controller, Plant, RunError};
 use rayon::prelude::*;
@@ -69,7 +69,7 @@ impl ControlSet<'_> {
         let blades = self.case.rotor.blades;
         let weights = self.load_weights();
         let cost = |state: &PlantState| loads_cost(&weights, &state.rotor.hub.harmonic(blades));
-        let model = Answered { plant: plant.settled(), answers: Linearised };
+        let model = LinearisedPlant(plant.settled());
         let starts = [plant.layout().zero(), self.control_volt(&best.1.flaps)];
         let planned: Vec<Result<Vec<FlapMotion>, RunError<PlantError>>> =
             starts.into_par_iter().map(|start| self.planned(model.clone(), &start)).collect();
@@ -92,7 +92,7 @@ impl ControlSet<'_> {
     /// Flap motions at the optimum of a model within its limits, from a control vector.
     fn planned(
         &self,
-        mut model: Answered<Linearised>,
+        mut model: LinearisedPlant,
         start_volt: &[f64],
     ) -> Result<Vec<FlapMotion>, RunError<PlantError>> {
         let failed = |source| RunError::plant("linearised", start_volt)(source);
@@ -103,7 +103,7 @@ impl ControlSet<'_> {
         let controller = self.controller(&t, way, EffortChoice::Limits)?;
         let rho = least_effort(controller.law());
         let run = controller.run_constrained_from(&mut model, rho, start_volt)?;
-        model.plant.flap_motion(&run.last().control_volt).map_err(failed)
+        model.0.flap_motion(&run.last().control_volt).map_err(failed)
     }
 
     /// Motions up to the highest controlled harmonic, mean left to the bias, times a factor: lower harmonics

@@ -11,7 +11,9 @@ mod study;
 
 pub use drives::Drives;
 pub use forecast::{Forecast, ForecastLine, ForecastRecord, forecasts};
-pub use robustness::{Disturbance, RobustnessCell, RobustnessLine, robustness_maps};
+pub use robustness::{
+    Disturbance, MarginLine, RobustnessCell, robustness_flights, robustness_maps,
+};
 pub use root_pitch::{Actuation, MotionHarmonic, RootPitchComparison, compare_root_pitch};
 pub(crate) use run::ideal_control;
 pub use run::{control_all, control_set};

@@ -1,17 +1,15 @@
-//! How the controllers stand noise, a wrong T and an actuator that drifts.
+//! How a controller that flies stands noise, a wrong T and an actuator that drifts, and how wrong T may be.
 
-use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
+use crate::case::{Case, ControlActuator, EffortChoice};
 use crate::control::drives::Drives;
-use crate::control::set::{ControlSet, close_loop, stop_name};
+use crate::control::set::{ControlSet, least_effort};
 use crate::error::StudyError;
 use crate::flaps::PlantError;
-use crate::loads::{HubLoads, Setting, loads_cost};
-use crate::plant::{Answered, Answers, HUB_OUTPUTS, RotorPlant, hub_outputs};
+use crate::plant::{HUB_OUTPUTS, RotorPlant, linearised_answer, output_weights};
 use crate::rotor::TrimmedRotor;
-use crate::series::scaled;
 use hhc_control::{
-    AdaptiveSettings, ControlError, ControlRun, Controller, Measurement, Plant, RunError, TMatrix,
-    identify_t,
+    ControlError, Cost, CycleController, EstimatorSettings, FeedbackLaw, LoadWeights, Plant,
+    RelaxedController, RelaxedSettings, RunError, TMatrix,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -19,165 +17,159 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// What is disturbed in one run.
+/// What is disturbed in one flight.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Disturbance {
     /// Standard deviation of the noise of a load, percent of the root mean square baseline load.
     pub noise_percent: f64,
-    /// T0 handed to the controller over the identified one.
+    /// T handed to the controller over the true one.
     pub t_gain: f64,
-    /// Phase error of that T0, deg of harmonic phase; the T that a local controller asks for is as wrong.
+    /// Phase error of that T, deg of harmonic phase.
     pub t_phase_deg: f64,
-    /// Loss of actuator gain with every measurement, percent.
+    /// The flap whose T is wrong, from 0; none for all.
+    #[serde(default)]
+    pub t_flap: Option<usize>,
+    /// Loss of actuator gain with every cycle, percent.
     pub drift_percent: f64,
 }
 
 /// One cell of the map.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct RobustnessCell {
     /// Harmonic under control, per rev.
     pub harmonic: usize,
-    /// `global`, `local` or `adaptive`.
+    /// `fixed`: T held, loads as measured; `adaptive`: T, Z0 and noise estimated; `adaptive-told`: told the noise.
     pub controller: String,
-    /// How the control was weighted: `limits`, `meet-stroke` or `given`.
-    #[serde(default)]
-    pub effort: String,
     /// What was disturbed.
     pub disturbance: Disturbance,
-    /// How the loop ended: `converged`, `stalled`, `out-of-range`, `step-limit`; `diverged`: no first step
-    /// lowers the cost; `failed`: the stroke was not met or a cone program not solved.
-    #[serde(alias = "outcome")]
-    pub status: String,
-    /// Control steps.
-    pub steps: usize,
-    /// Backtracks.
-    #[serde(alias = "halvings")]
-    pub backtracks: u32,
-    /// Measurements.
-    pub measurements: usize,
-    /// Hub loads at the end, without noise.
-    pub end: HubLoads,
-    /// The best of the way, without noise.
-    pub best: HubLoads,
+    /// Cycles of a flight.
+    pub cycles: usize,
+    /// Draws of the noise, their seeds the same for all controllers; 1 without noise.
+    pub draws: usize,
+    /// `J / J0` over the last ten cycles, mean of the draws; of the loads without noise.
+    pub end_ratio: f64,
+    /// The same of the best and of the worst draw.
+    pub end_range: [f64; 2],
+    /// Largest `J / J0` of any cycle of any draw.
+    pub peak_ratio: f64,
 }
 
-/// A cell with its reductions.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct RobustnessLine {
-    /// What was found.
-    #[serde(flatten)]
-    pub cell: RobustnessCell,
-    /// Fall of `J_Z` at the end, percent: of the loads without noise, with the actuator as it is by then.
-    pub reduction_percent: f64,
-    /// The best any recorded control reached on the way.
-    pub best_percent: f64,
+/// How wrong T may be at one harmonic.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct MarginLine {
+    /// Harmonic under control, per rev.
+    pub harmonic: usize,
+    /// Largest singular value of the weighted T over the smallest.
+    pub condition: f64,
+    /// Phase error of all flaps at which the loop diverges, deg; 180 for none.
+    pub common_phase_deg: f64,
+    /// Gain of the rotor over that of T at which it does; 0 for none.
+    pub common_gain: f64,
+    /// Phase error of all flaps from which `J` rises above `J0` on the way, deg.
+    pub common_overshoot_deg: f64,
+    /// The same of one flap alone, flap by flap.
+    pub flap_overshoot_deg: Vec<f64>,
 }
 
 impl RobustnessCell {
-    /// The cell with its reductions computed from its loads.
-    pub fn figures(&self, setting: &Setting) -> RobustnessLine {
-        let weights = setting.load_weights();
-        let before = loads_cost(&weights, &setting.baseline);
-        let fall = |loads: &HubLoads| {
-            setting.reduction_percent(before, loads_cost(&weights, &loads.parts()))
-        };
-        RobustnessLine {
-            reduction_percent: fall(&self.end),
-            best_percent: fall(&self.best),
-            cell: self.clone(),
-        }
+    /// Name and value of every field, as of a table without loss.
+    pub fn fields(&self) -> [(&'static str, String); 13] {
+        let d = &self.disturbance;
+        let ratio = |value: f64| format!("{value:.5}");
+        [
+            ("per_rev", self.harmonic.to_string()),
+            ("controller", self.controller.clone()),
+            ("noise_percent", d.noise_percent.to_string()),
+            ("t_gain", d.t_gain.to_string()),
+            ("t_phase_deg", d.t_phase_deg.to_string()),
+            ("t_flap", d.t_flap.map_or_else(String::new, |flap| flap.to_string())),
+            ("drift_percent", d.drift_percent.to_string()),
+            ("cycles", self.cycles.to_string()),
+            ("draws", self.draws.to_string()),
+            ("end_j_over_j0", ratio(self.end_ratio)),
+            ("end_best", ratio(self.end_range[0])),
+            ("end_worst", ratio(self.end_range[1])),
+            ("peak_j_over_j0", ratio(self.peak_ratio)),
+        ]
+    }
+
+    /// `J / J0` at the end, with its spread where there is noise, and its peak, for people.
+    pub fn summary(&self) -> String {
+        let [least, most] = self.end_range;
+        let spread =
+            if self.draws > 1 { format!(" ({least:.3} to {most:.3})") } else { String::new() };
+        format!("{:.3}{spread}, {:.2}", self.end_ratio, self.peak_ratio)
     }
 }
 
-const NOISE_PERCENT: [f64; 4] = [0.0, 1.0, 3.0, 10.0];
-const T_GAINS: [f64; 3] = [0.8, 1.0, 1.2];
-const T_PHASES_DEG: [f64; 3] = [-30.0, 0.0, 30.0];
+impl MarginLine {
+    /// Harmonic, condition, phase and gain of divergence, phases of overshoot, for people.
+    pub fn cells(&self) -> [String; 6] {
+        let flaps: Vec<String> =
+            self.flap_overshoot_deg.iter().map(|deg| format!("{deg:.0}")).collect();
+        [
+            format!("{}/rev", self.harmonic),
+            format!("{:.1}", self.condition),
+            format!("{:.0}", self.common_phase_deg),
+            format!("{:.1}", self.common_gain),
+            format!("{:.0}", self.common_overshoot_deg),
+            flaps.join(", "),
+        ]
+    }
+}
+
+const NOISE_PERCENT: [f64; 3] = [1.0, 3.0, 10.0];
+const T_GAINS: [f64; 2] = [0.5, 2.0];
+const T_PHASES_DEG: [f64; 6] = [-80.0, -60.0, -30.0, 30.0, 60.0, 80.0];
+const FLAP_PHASE_DEG: f64 = 20.0;
 const DRIFT_PERCENT: [f64; 2] = [0.5, 2.0];
-/// First seed of the noise.
+/// First seed of the noise, draws of a cell with noise, cycles of a flight and those that count as its end.
 const SEED: u64 = 20_260_101;
+const DRAWS: usize = 10;
+const CYCLES: usize = 40;
+const END_CYCLES: usize = 10;
+/// Part of the way that a step goes, and its largest change over the largest amplitude.
+const GAIN: f64 = 0.5;
+const RATE: f64 = 0.25;
+/// Least noise that a filter is told of.
+const LEAST_NOISE: f64 = 1e-3;
+const CONTROLLERS: [&str; 3] = ["fixed", "adaptive", "adaptive-told"];
 
-/// The rotor of the study with its real actuators, disturbed.
-///
-/// Differs from a plant at rest on purpose: noise and drift make its answers depend on the calls made
-/// before.
-struct Disturbed {
-    /// Standard deviation of a load.
-    noise: f64,
-    /// Loss of actuator gain per answer, as a part.
-    drift: f64,
-    t_gain: f64,
-    t_phase_rad: f64,
-    random: ChaCha8Rng,
-    /// Controls that were measured, one per answer, and their loads without noise.
-    truth: Vec<(Vec<f64>, [f64; 12])>,
-}
-
-impl Disturbed {
-    fn new(disturbance: Disturbance, rms: f64, seed: u64) -> Self {
-        Self {
-            noise: 0.01 * disturbance.noise_percent * rms,
-            drift: 0.01 * disturbance.drift_percent,
-            t_gain: disturbance.t_gain,
-            t_phase_rad: disturbance.t_phase_deg.to_radians(),
-            random: ChaCha8Rng::seed_from_u64(seed),
-            truth: Vec::new(),
-        }
-    }
-
-    /// Loads without noise and flap motions, the gain of the actuators as it is now.
-    fn answer(&self, plant: &RotorPlant, control_volt: &[f64]) -> Result<Measurement, PlantError> {
-        let left = (1.0 - self.drift).powf(self.truth.len() as f64);
-        let mut state = plant.state(control_volt)?;
-        if self.drift > 0.0 && !self.truth.is_empty() {
-            for flap in &mut state.flaps {
-                flap.flap_deg = scaled(&flap.flap_deg, left);
-            }
-            state = plant.state_of(state.flaps)?;
-        }
-        Ok(plant.seen(control_volt, &state))
-    }
-
-    /// The loads that a control had when it was measured last, without noise.
-    fn measured(&self, control_volt: &[f64]) -> Option<[f64; 12]> {
-        let mut latest = self.truth.iter().rev();
-        latest.find(|(u, _)| u == control_volt).map(|(_, loads)| *loads)
-    }
-}
-
-impl Answers for Disturbed {
-    fn measure(
-        &mut self,
-        plant: &RotorPlant,
-        control_volt: &[f64],
-    ) -> Result<Measurement, PlantError> {
-        let mut measurement = self.answer(plant, control_volt)?;
-        self.truth.push((control_volt.to_vec(), hub_outputs(&measurement.outputs)));
-        // the power is worked out, not measured
-        add_noise(&mut measurement.outputs[..HUB_OUTPUTS], self.noise, &mut self.random);
-        Ok(measurement)
-    }
-
-    fn offered_t(
-        &self,
-        plant: &mut RotorPlant,
-        control_volt: &[f64],
-    ) -> Result<Option<TMatrix>, PlantError> {
-        let offered = plant.linearised_t(control_volt)?;
-        let wrong = |t: TMatrix| wrong_t(&t, self.t_gain, self.t_phase_rad);
-        offered.map(wrong).transpose().map_err(PlantError::Bias)
-    }
+fn disturbances(flaps: usize) -> Vec<Disturbance> {
+    let none = Disturbance { t_gain: 1.0, ..Disturbance::default() };
+    let mut all = vec![none];
+    all.extend(NOISE_PERCENT.map(|noise_percent| Disturbance { noise_percent, ..none }));
+    all.extend(T_GAINS.map(|t_gain| Disturbance { t_gain, ..none }));
+    all.extend(T_PHASES_DEG.map(|t_phase_deg| Disturbance { t_phase_deg, ..none }));
+    all.extend((0..flaps).map(|flap| Disturbance {
+        t_phase_deg: FLAP_PHASE_DEG,
+        t_flap: Some(flap),
+        ..none
+    }));
+    all.extend(DRIFT_PERCENT.map(|drift_percent| Disturbance { drift_percent, ..none }));
+    all.push(Disturbance {
+        noise_percent: 3.0,
+        t_gain: 0.8,
+        t_phase_deg: 30.0,
+        t_flap: None,
+        drift_percent: 0.5,
+    });
+    all
 }
 
 /// T with the loads of the hub multiplied by a gain and turned by a phase; the weight of the power is known.
-fn wrong_t(t: &TMatrix, gain: f64, phase_rad: f64) -> Result<TMatrix, ControlError> {
-    if gain.to_bits() == 1.0_f64.to_bits() && phase_rad == 0.0 {
-        return Ok(t.clone());
-    }
-    let mut columns = t.turned(gain, phase_rad)?.columns();
+fn wrong_t(t: &TMatrix, disturbance: &Disturbance, flaps: usize) -> Result<TMatrix, ControlError> {
+    let width = t.controls() / flaps;
+    let controls = match disturbance.t_flap {
+        Some(flap) => flap * width..(flap + 1) * width,
+        None => 0..t.controls(),
+    };
+    let phase_rad = disturbance.t_phase_deg.to_radians();
+    let mut columns = t.turned_within(controls, disturbance.t_gain, phase_rad)?.columns();
     for (wrong, right) in columns.iter_mut().zip(t.columns()) {
-        for (wrong, right) in wrong.iter_mut().zip(right).skip(HUB_OUTPUTS) {
-            *wrong = right;
-        }
+        wrong[HUB_OUTPUTS..].copy_from_slice(&right[HUB_OUTPUTS..]);
     }
     TMatrix::from_columns(&columns)
 }
@@ -190,194 +182,189 @@ fn add_noise(loads: &mut [f64], deviation: f64, random: &mut ChaCha8Rng) {
     }
 }
 
-fn disturbances() -> Vec<Disturbance> {
-    let none =
-        Disturbance { noise_percent: 0.0, t_gain: 1.0, t_phase_deg: 0.0, drift_percent: 0.0 };
-    let noise = NOISE_PERCENT.map(|noise_percent| Disturbance { noise_percent, ..none });
-    let wrong = T_GAINS.into_iter().flat_map(|t_gain| {
-        T_PHASES_DEG.map(|t_phase_deg| Disturbance { t_gain, t_phase_deg, ..none })
-    });
-    let drift = DRIFT_PERCENT.map(|drift_percent| Disturbance { drift_percent, ..none });
-    let all =
-        Disturbance { noise_percent: 3.0, t_gain: 0.8, t_phase_deg: 30.0, drift_percent: 0.5 };
-    let wrong = wrong.filter(|d| *d != none);
-    noise.into_iter().chain(wrong).chain(drift).chain([all]).collect()
-}
-
-/// What is run for one cell.
-#[derive(Clone, Copy)]
-struct Trial {
-    disturbance: Disturbance,
-    /// Of the noise.
-    seed: u64,
-    controller: ControllerChoice,
-    /// How the control is weighted.
-    effort: EffortChoice,
-}
-
-/// Every controller of a map under one disturbance, in their order. Each weights the control as the case does, but a
-/// weight that is tuned to the stroke goes with a constant T; where T is learnt the limits take its place.
-fn trials(effort: EffortChoice, disturbance: Disturbance) -> [Trial; 3] {
-    let learnt = if effort == EffortChoice::MeetStroke { EffortChoice::Limits } else { effort };
-    let of = |controller, effort| Trial { disturbance, seed: SEED, controller, effort };
-    [
-        of(ControllerChoice::Global, effort),
-        of(ControllerChoice::Local, learnt),
-        of(ControllerChoice::Adaptive, learnt),
-    ]
-}
-
-fn effort_name(effort: EffortChoice) -> &'static str {
-    match effort {
-        EffortChoice::MeetStroke => "meet-stroke",
-        EffortChoice::Limits => "limits",
-        EffortChoice::Given { .. } => "given",
-    }
-}
-
-/// Runs every controller of one harmonic under every disturbance: the loop of the study itself, with its plant,
-/// limits, laws, renewals and settings.
-///
-/// Every run starts from zero control and a T0 identified without disturbance, wrong by what the disturbance says; so
-/// is the T that the local controller asks the plant for. A filter is told the noise.
-///
-/// # Errors
-/// [`StudyError`] of the plant; a run that diverges or whose stroke is not met is a cell of the map.
-fn cells(
-    case: &Case,
-    rotor: &TrimmedRotor,
-    drives: &Drives,
-    harmonic: usize,
-    disturbances: Vec<Disturbance>,
-) -> Result<Vec<RobustnessCell>, StudyError> {
-    if drives.hysteretic.is_none() {
-        return Ok(Vec::new());
-    }
-    let harmonics = [harmonic];
-    let set = ControlSet::new(case, rotor, drives, &harmonics)?;
-    let plant = set.plant(ControlActuator::Hysteretic)?;
-    let step_volt = set.step_volts(&plant);
-    let failed = |source| set.failed(ControlActuator::Hysteretic, source);
-    let baseline = rotor.trim().rotor.hub.harmonic(case.rotor.blades);
-    let flight = Flight {
-        set: &set,
-        t0: identify_t(&mut plant.clone(), &step_volt).map_err(failed)?,
-        t_at_rest: set.t_at_rest(&plant).map_err(failed)?,
-        step_volt,
-        rms: (baseline.iter().map(|z| z * z).sum::<f64>() / baseline.len() as f64).sqrt(),
-        weights: set.load_weights(),
-        plant,
-        baseline,
-    };
-    let each: Vec<Trial> = disturbances
-        .into_iter()
-        .flat_map(|disturbance| trials(case.control.effort, disturbance))
-        .zip(SEED..)
-        .map(|(trial, seed)| Trial { seed, ..trial })
-        .collect();
-    each.into_par_iter().map(|trial| flight.cell(trial).map_err(failed)).collect()
-}
-
-/// What the cells of a map share.
-struct Flight<'a> {
+/// What the flights of one harmonic share. The rotor is linearised about its trim; the actuators are as identified.
+struct Flights<'a> {
     set: &'a ControlSet<'a>,
     plant: RotorPlant,
-    /// By differences, and of the linearised rotor.
     t0: TMatrix,
-    t_at_rest: TMatrix,
-    step_volt: Vec<f64>,
-    baseline: [f64; HUB_OUTPUTS],
+    settings: RelaxedSettings,
+    baseline: Vec<f64>,
     rms: f64,
-    weights: [f64; 6],
 }
 
-impl Flight<'_> {
-    fn cell(&self, trial: Trial) -> Result<RobustnessCell, RunError<PlantError>> {
-        let Trial { disturbance, seed, controller: choice, effort } = trial;
-        let answers = Disturbed::new(disturbance, self.rms, seed);
-        let way = match self.set.t_policy(choice, self.step_volt.clone()) {
-            Controller::Adaptive(settings) => {
-                Controller::Adaptive(AdaptiveSettings { noise: answers.noise, ..settings })
-            }
-            way => way,
+/// A controller in a flight.
+enum Flying {
+    Fixed(Box<RelaxedController>, TMatrix),
+    Adaptive(Box<CycleController>),
+}
+
+impl Flying {
+    fn control_volt(&self) -> &[f64] {
+        match self {
+            Self::Fixed(relaxed, _) => relaxed.control_volt(),
+            Self::Adaptive(cycle) => cycle.controller().control_volt(),
+        }
+    }
+
+    fn step(&mut self, outputs: &[f64]) -> Result<(), ControlError> {
+        match self {
+            Self::Fixed(relaxed, t) => relaxed.step(t, outputs).map(|_| ()),
+            Self::Adaptive(cycle) => cycle.step(outputs).map(|_| ()),
+        }
+    }
+}
+
+impl<'a> Flights<'a> {
+    fn new(set: &'a ControlSet<'a>) -> Result<Self, StudyError> {
+        let plant = set.plant(ControlActuator::Hysteretic)?;
+        let failed = |source| set.failed(ControlActuator::Hysteretic, source);
+        let t0 = set.t_at_rest(&plant).map_err(failed)?;
+        let zero = plant.layout().zero();
+        let measured = linearised_answer(&plant, &zero, 1.0)
+            .map_err(RunError::plant("measured", &zero))
+            .map_err(failed)?;
+        let baseline = measured.outputs;
+        let weights = output_weights(&set.load_weights(), t0.loads());
+        let law = FeedbackLaw::new(&t0, &weights).map_err(RunError::Control).map_err(failed)?;
+        let effort_weight = match set.case.control.effort {
+            EffortChoice::Given { rho } => rho,
+            EffortChoice::MeetStroke | EffortChoice::Limits => least_effort(&law),
         };
-        let t0 = match choice {
-            ControllerChoice::Local => &self.t_at_rest,
-            ControllerChoice::Global | ControllerChoice::Adaptive => &self.t0,
+        let amplitude_volt = set.limits.iter().map(|l| l.amplitude_volt).fold(f64::MAX, f64::min);
+        let settings = RelaxedSettings {
+            load_weights: weights,
+            effort_weight,
+            rate_weight: 0.0,
+            gain: GAIN,
+            amplitude_limit_volt: vec![amplitude_volt; plant.layout().pairs()],
+            rate_limit_volt: RATE * amplitude_volt,
         };
-        let wrong = wrong_t(t0, answers.t_gain, answers.t_phase_rad)?;
-        let controller = self.set.controller(&wrong, way, effort)?;
-        let mut plant = Answered { plant: self.plant.clone(), answers };
-        let (run, status) = match close_loop(&controller, &mut plant, effort) {
-            Ok((run, _)) => {
-                let status = stop_name(run.stop);
-                (Some(run), status)
-            }
-            Err(RunError::Control(
-                ControlError::Diverges { .. } | ControlError::NotAdmitted { .. },
-            )) => (None, "diverged"),
-            Err(RunError::Control(
-                ControlError::StrokeNotMet { .. } | ControlError::ConeProgram { .. },
-            )) => (None, "failed"),
-            Err(error) => return Err(error),
+        let squares = baseline[..HUB_OUTPUTS].iter().map(|z| z * z).sum::<f64>();
+        let rms = (squares / HUB_OUTPUTS as f64).sqrt();
+        Ok(Self { set, plant, t0, settings, baseline, rms })
+    }
+
+    fn cost(&self, outputs: &[f64]) -> f64 {
+        let LoadWeights::Diagonal(weights) = &self.settings.load_weights else {
+            return outputs.iter().map(|z| z * z).sum();
         };
-        let disturbed = &plant.answers;
-        let (end, best) = match &run {
-            Some(run) => (Self::end(run, &plant)?, self.best(run, disturbed)),
-            // a run that diverges stays where it is
-            None => (self.baseline, self.baseline),
+        Cost::of(outputs, weights, &[], 0.0).loads
+    }
+
+    fn controller(
+        &self,
+        name: &str,
+        disturbance: &Disturbance,
+        start: &[f64],
+    ) -> Result<Flying, ControlError> {
+        let layout = self.plant.layout();
+        let t0 = wrong_t(&self.t0, disturbance, layout.flaps())?;
+        let relaxed = RelaxedController::new(layout, t0.loads(), self.settings.clone())?;
+        if name == CONTROLLERS[0] {
+            return Ok(Flying::Fixed(Box::new(relaxed), t0));
+        }
+        let share = (0.01 * disturbance.noise_percent).max(LEAST_NOISE);
+        let settings = EstimatorSettings {
+            noise_share: (name == CONTROLLERS[2]).then_some(share),
+            ..EstimatorSettings::in_flight(self.set.case.control.amplitude_volt)
         };
+        let cycle = CycleController::new(relaxed, &settings, &t0, start)?;
+        Ok(Flying::Adaptive(Box::new(cycle)))
+    }
+
+    /// `J / J0` of every cycle, without noise.
+    fn fly(
+        &self,
+        name: &str,
+        disturbance: &Disturbance,
+        seed: u64,
+    ) -> Result<Vec<f64>, RunError<PlantError>> {
+        let noise = 0.01 * disturbance.noise_percent * self.rms;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut start = self.baseline.clone();
+        add_noise(&mut start[..HUB_OUTPUTS], noise, &mut random);
+        let mut flying = self.controller(name, disturbance, &start)?;
+        let before = self.cost(&self.baseline);
+        let mut ratios = Vec::with_capacity(CYCLES);
+        let mut left = 1.0;
+        for _ in 0..CYCLES {
+            let control_volt = flying.control_volt();
+            let mut outputs = linearised_answer(&self.plant, control_volt, left)
+                .map_err(RunError::plant("measured", control_volt))?
+                .outputs;
+            ratios.push(self.cost(&outputs) / before);
+            add_noise(&mut outputs[..HUB_OUTPUTS], noise, &mut random);
+            flying.step(&outputs)?;
+            left *= 1.0 - 0.01 * disturbance.drift_percent;
+        }
+        Ok(ratios)
+    }
+
+    fn cell(
+        &self,
+        name: &str,
+        disturbance: Disturbance,
+        done: &(dyn Fn() + Sync),
+    ) -> Result<RobustnessCell, RunError<PlantError>> {
+        let draws = if disturbance.noise_percent > 0.0 { DRAWS } else { 1 };
+        let flights = (SEED..SEED + draws as u64)
+            .map(|seed| self.fly(name, &disturbance, seed).inspect(|_| done()))
+            .collect::<Result<Vec<_>, _>>()?;
+        let ends: Vec<f64> = flights
+            .iter()
+            .map(|ratios| ratios[CYCLES - END_CYCLES..].iter().sum::<f64>() / END_CYCLES as f64)
+            .collect();
+        let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
         Ok(RobustnessCell {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
-            controller: choice_name(choice).to_owned(),
-            effort: effort_name(effort).to_owned(),
+            controller: name.to_owned(),
             disturbance,
-            status: status.to_owned(),
-            steps: run.as_ref().map_or(0, |run| run.steps.len()),
-            backtracks: run.as_ref().map_or(0, |run| run.backtracks),
-            measurements: disturbed.truth.len(),
-            end: HubLoads::from_parts(end),
-            best: HubLoads::from_parts(best),
+            cycles: CYCLES,
+            draws,
+            end_ratio: ends.iter().sum::<f64>() / draws as f64,
+            end_range: [
+                ends.iter().copied().fold(f64::INFINITY, f64::min),
+                largest(&mut ends.iter().copied()),
+            ],
+            peak_ratio: largest(&mut flights.iter().flatten().copied()),
         })
     }
 
-    /// The loads at the end, without noise and with the actuator as it is by then.
-    fn end(
-        run: &ControlRun,
-        Answered { plant, answers }: &Answered<Disturbed>,
-    ) -> Result<[f64; HUB_OUTPUTS], RunError<PlantError>> {
-        let control = &run.last().control_volt;
-        if let Some(loads) = answers.measured(control).filter(|_| answers.drift == 0.0) {
-            return Ok(loads);
-        }
-        let answer = answers.answer(plant, control).map_err(|source| RunError::Plant {
-            call: "measured",
-            at_volt: control.clone(),
-            history: run.history().cloned().collect(),
-            source,
-        })?;
-        Ok(hub_outputs(&answer.outputs))
-    }
-
-    /// The least loads of the record, each as it was when it was measured.
-    fn best(&self, run: &ControlRun, disturbed: &Disturbed) -> [f64; HUB_OUTPUTS] {
-        let weights = &self.weights;
-        let all = run.history().filter_map(|step| disturbed.measured(&step.control_volt));
-        all.fold(self.baseline, |best, loads| {
-            if loads_cost(weights, &loads) < loads_cost(weights, &best) { loads } else { best }
+    fn margins(&self) -> Result<MarginLine, ControlError> {
+        let RelaxedSettings { load_weights, effort_weight, gain, .. } = &self.settings;
+        let law = FeedbackLaw::new(&self.t0, load_weights)?;
+        let layout = self.plant.layout();
+        let found = law.margins(layout, *effort_weight, *gain, &self.baseline)?;
+        let singular = law.singular_values();
+        let ends = singular.first().zip(singular.last());
+        Ok(MarginLine {
+            harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
+            condition: ends.map_or(0.0, |(first, last)| first / last),
+            common_phase_deg: found.common_phase_deg,
+            common_gain: if found.common_gain.is_finite() { found.common_gain } else { 0.0 },
+            common_overshoot_deg: found.common_overshoot_deg,
+            flap_overshoot_deg: found.flap_overshoot_deg,
         })
     }
 }
 
-fn choice_name(choice: ControllerChoice) -> &'static str {
-    match choice {
-        ControllerChoice::Global => "global",
-        ControllerChoice::Local => "local",
-        ControllerChoice::Adaptive => "adaptive",
-    }
+/// Harmonics that a case controls alone on the hysteretic actuator.
+fn harmonics(case: &Case) -> impl Iterator<Item = usize> {
+    let is_flown = case.control.actuators.contains(&ControlActuator::Hysteretic);
+    case.control.harmonics.iter().filter(move |set| is_flown && set.len() == 1).flatten().copied()
 }
 
-/// The maps of every harmonic that a case controls alone on the hysteretic actuator.
+/// Flights that the maps of a case take: the steps of its progress.
+pub fn robustness_flights(case: &Case) -> usize {
+    let draws = disturbances(case.flaps.len())
+        .iter()
+        .map(|d| if d.noise_percent > 0.0 { DRAWS } else { 1 })
+        .sum::<usize>();
+    harmonics(case).count() * draws * CONTROLLERS.len()
+}
+
+/// The maps and margins of every harmonic that a case controls alone on the hysteretic actuator: flights of a fixed number
+/// of cycles without a line search, on the rotor linearised about its trim. `done` is called after each flight.
 ///
 /// # Errors
 /// [`StudyError::Robustness`] of the plant.
@@ -385,17 +372,31 @@ pub fn robustness_maps(
     case: &Case,
     rotor: &TrimmedRotor,
     drives: &Drives,
-) -> Result<Vec<RobustnessCell>, StudyError> {
-    if rotor.wake_diverged() || !case.control.actuators.contains(&ControlActuator::Hysteretic) {
-        return Ok(Vec::new());
+    done: &(dyn Fn() + Sync),
+) -> Result<(Vec<RobustnessCell>, Vec<MarginLine>), StudyError> {
+    let (mut maps, mut margins) = (Vec::new(), Vec::new());
+    if rotor.wake_diverged() || drives.hysteretic.is_none() {
+        return Ok((maps, margins));
     }
-    let mut maps = Vec::new();
-    for &harmonic in case.control.harmonics.iter().filter(|set| set.len() == 1).flatten() {
-        let map = cells(case, rotor, drives, harmonic, disturbances())
-            .map_err(|source| StudyError::Robustness { harmonic, source: Box::new(source) })?;
-        maps.extend(map);
+    for harmonic in harmonics(case) {
+        let located = |source| StudyError::Robustness { harmonic, source: Box::new(source) };
+        let of_one = [harmonic];
+        let set = ControlSet::new(case, rotor, drives, &of_one).map_err(located)?;
+        let flights = Flights::new(&set).map_err(located)?;
+        let failed = |source| located(set.failed(ControlActuator::Hysteretic, source));
+        margins.push(flights.margins().map_err(RunError::Control).map_err(failed)?);
+        let cells: Vec<(Disturbance, &str)> = disturbances(case.flaps.len())
+            .into_iter()
+            .flat_map(|disturbance| CONTROLLERS.map(|name| (disturbance, name)))
+            .collect();
+        let cells = cells
+            .into_par_iter()
+            .map(|(disturbance, name)| flights.cell(name, disturbance, done))
+            .collect::<Result<Vec<_>, _>>()
+            .map_err(failed)?;
+        maps.extend(cells);
     }
-    Ok(maps)
+    Ok((maps, margins))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ mod root_pitch;
 mod rotor_plant;
 mod tangent;
 
-pub(crate) use answered::{Answered, Answers, Linearised};
+pub(crate) use answered::{LinearisedPlant, linearised_answer};
 pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
 pub use pair_power::given_watt_per_rad2;
 pub use root_pitch::RootPitchPlant;

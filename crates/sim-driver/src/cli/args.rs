@@ -159,7 +159,8 @@ pub struct RunArgs {
     /// Also change one assumption at a time, those of a free wake included: sensitivity.csv.
     #[arg(long)]
     pub sensitivity: bool,
-    /// Also control under noise, a wrong T and drift: robustness.csv.
+    /// Also fly under noise, a wrong T and drift, and say how wrong T may be: robustness.csv. About a minute for three
+    /// harmonics.
     #[arg(long)]
     pub robustness: bool,
     /// Form of the output.

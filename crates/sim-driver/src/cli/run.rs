@@ -19,7 +19,7 @@ use crate::results::{Figures, RESULT_FILE, StoredResult, figures};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of, stored_of};
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
 use crate::terminal::{details, summary};
-use rotor_study::{Assumptions, robustness_maps, sensitivities};
+use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::{Path, PathBuf};
 use trim::{TrimSolution, WakeTrim};
 
@@ -62,7 +62,8 @@ struct Scope {
 impl Scope {
     /// Steps of the progress of a case with all of it.
     fn steps(self, loaded: &LoadedCase) -> usize {
-        steps_of(loaded) + self.sensitivity.map_or(0, |which| which.rows(&loaded.case))
+        let flights = if self.robustness { robustness_flights(&loaded.case) } else { 0 };
+        steps_of(loaded) + self.sensitivity.map_or(0, |which| which.rows(&loaded.case)) + flights
     }
 
     /// The outcome with what is computed beside the case.
@@ -81,8 +82,10 @@ impl Scope {
         }
         if self.robustness {
             progress.doing("robustness");
-            outcome.result.robustness =
-                robustness_maps(&loaded.case, &outcome.trimmed, &outcome.drives)
+            let done = || progress.step();
+            let RunOutcome { trimmed, drives, .. } = &outcome;
+            (outcome.result.robustness, outcome.result.margins) =
+                robustness_maps(&loaded.case, trimmed, drives, &done)
                     .map_err(|error| loaded.located(error))?;
         }
         Ok(outcome)
@@ -140,8 +143,8 @@ fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
         let harmonics = &stored.case.control.harmonics;
         write("sensitivity.csv", &sensitivity_csv(harmonics, &figures.sensitivity))?;
     }
-    if !figures.robustness.is_empty() {
-        write("robustness.csv", &robustness_csv(&figures.robustness))?;
+    if !stored.result.robustness.is_empty() {
+        write("robustness.csv", &robustness_csv(&stored.result.robustness))?;
     }
     if stored.result.measured.is_some() {
         write("measured.csv", &measured_csv(figures))?;

@@ -53,9 +53,7 @@ impl<'a> StudyReport<'a> {
         let Self { stored, figures } = *self;
         let sensitivity = (!figures.sensitivity.is_empty())
             .then(|| tables::sensitivity(&stored.case.control.harmonics, &figures.sensitivity));
-        let robustness =
-            (!figures.robustness.is_empty()).then(|| tables::robustness(&figures.robustness));
-        sensitivity.into_iter().chain(robustness)
+        sensitivity.into_iter().chain(tables::robustness(&stored.result))
     }
 
     /// The bench fits, the comparison with the paper and the further tables, for the terminal.

@@ -14,9 +14,9 @@ use hhc_control::{Cost, FeedbackLaw, TMatrix, lag_deg};
 use rotor_base::RotorScales;
 use rotor_response::HingeMoment;
 use rotor_study::{
-    CurveComparison, Forecast, HingePower, MeanLoads, PowerOutputs, RobustnessLine,
-    SensitivityLine, Setting, StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine,
-    VortexComparison, WakeStatus, compare_curves, loads_cost, output_weights, sensitivity_lines,
+    CurveComparison, Forecast, HingePower, MeanLoads, PowerOutputs, SensitivityLine, Setting,
+    StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine, VortexComparison, WakeStatus,
+    compare_curves, loads_cost, output_weights, sensitivity_lines,
 };
 use serde::Serialize;
 
@@ -58,9 +58,6 @@ pub struct Figures {
     /// The reductions with one assumption changed at a time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensitivity: Vec<SensitivityLine>,
-    /// Reductions under noise, a wrong T and drift.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub robustness: Vec<RobustnessLine>,
     /// Hub loads with dissimilar blades, flaps at rest and after every control.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub unlike_blades: Vec<UnlikeLine>,
@@ -191,7 +188,6 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
         control,
         forecasts: result.forecasts.iter().map(|line| line.figures(setting)).collect(),
         sensitivity: sensitivity_lines(&result.sensitivity, setting),
-        robustness: result.robustness.iter().map(|cell| cell.figures(setting)).collect(),
         unlike_blades: result.unlike_blades.clone(),
         each_unlike_blade: result.each_unlike_blade.clone(),
         warnings,

@@ -21,8 +21,8 @@ pub(crate) use measured::{curve_name, same_station};
 pub use stored::{RESULT_FILE, StoredResult};
 
 use rotor_study::{
-    DiskLoads, ForecastLine, HubLoads, RobustnessCell, Sensitivity, StabilityLine, StationLine,
-    UnlikeBladeLine, UnlikeLine, WakeStatus,
+    DiskLoads, ForecastLine, HubLoads, MarginLine, RobustnessCell, Sensitivity, StabilityLine,
+    StationLine, UnlikeBladeLine, UnlikeLine, WakeStatus,
 };
 use serde::{Deserialize, Serialize};
 
@@ -73,6 +73,9 @@ pub struct RunResult {
     /// Control under noise, a wrong T and drift; empty unless asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub robustness: Vec<RobustnessCell>,
+    /// How wrong T may be, one entry per harmonic of the map.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub margins: Vec<MarginLine>,
     /// Hub loads with dissimilar blades, flaps at rest and after every control; empty if all are alike.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub unlike_blades: Vec<UnlikeLine>,

@@ -58,8 +58,8 @@ pub(crate) fn details(figures: &Figures) -> String {
     }
     for line in &figures.unlike_blades {
         sheet.line(format_args!(
-            "\nHub loads with the dissimilar blades, amplitudes; flaps: {}",
-            line.flaps
+            "\nHub loads with the dissimilar blades, amplitudes; flaps: {}; J/J0 {:.4}",
+            line.flaps, line.cost_ratio
         ));
         sheet.block(&unlike_table(line));
     }

@@ -97,8 +97,19 @@ impl Case {
     /// Values of a case that hardly are meant, flight or no flight.
     pub fn value_warnings(&self) -> Vec<PlausibilityWarning> {
         let flight = [self.moment_trim_warning(), self.drag_warning(), self.axial_warning()];
-        let wake = self.wake_warnings();
+        let wake = self.wake_warnings().into_iter().chain(self.first_harmonic_warning());
         self.blade_warnings().into_iter().chain(flight.into_iter().flatten()).chain(wake).collect()
+    }
+
+    /// Control at 1/rev, which is the pilot's.
+    fn first_harmonic_warning(&self) -> Option<PlausibilityWarning> {
+        let is_asked = self.control.harmonics.iter().flatten().any(|&n| n == 1);
+        is_asked.then(|| {
+            warning(
+                "control.harmonics",
+                "flaps at 1/rev tilt the rotor as cyclic pitch does, and the pilot's controls are held: the flight is no longer trimmed (residuals.trim of the line in result.json). Control 2/rev and above, or take the reduction with that imbalance",
+            )
+        })
     }
 
     /// A near wake that meets the other blades, and more azimuth steps than the response resolves.

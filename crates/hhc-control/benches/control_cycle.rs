@@ -1,0 +1,75 @@
+//! Cost of one cycle of the adaptive controller, and of one sample of the analyser.
+//!
+//! Budget: 20 us a cycle for two flaps at one harmonic, with limits that bind, on one core; the same for 2 to 5/rev
+//! together (16 controls) stands beside it. The line `ratio to budget` sets them side by side.
+#![expect(clippy::print_stdout, reason = "the ratio to the budget is the bench's result")]
+#![expect(clippy::unwrap_used, reason = "a bench whose inputs are refused cannot go on")]
+#![expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use hhc_control::{
+    ControlLayout, CycleController, EstimatorSettings, HarmonicAnalyser, RelaxedController,
+    RelaxedSettings, TMatrix,
+};
+use std::hint::black_box;
+use std::time::Instant;
+
+/// The budget of one cycle, us.
+const BUDGET_US: f64 = 20.0;
+
+/// A rotor of 12 loads, its T of two flaps that are nearly alike.
+fn rotor(harmonics: &[u32]) -> (TMatrix, Vec<f64>, CycleController) {
+    let layout = ControlLayout::new(2, harmonics.to_vec()).unwrap();
+    let columns: Vec<Vec<f64>> = (0..layout.len())
+        .map(|j| {
+            let flap = j / (2 * harmonics.len());
+            let wave = |i: usize| (0.8 * i as f64 + 1.3 * j as f64).sin();
+            (0..12).map(|i| wave(i) + 0.2 * (1.9 * (i + flap) as f64).cos()).collect()
+        })
+        .collect();
+    let t = TMatrix::from_columns(&columns).unwrap();
+    let z0: Vec<f64> = (0..12).map(|i| 40.0 * (0.7 * f64::from(i)).cos()).collect();
+    let settings = RelaxedSettings {
+        gain: 0.3,
+        amplitude_limit_volt: vec![10.0; layout.pairs()],
+        effort_weight: 1e-3,
+        ..RelaxedSettings::of_layout(&layout)
+    };
+    let controller = RelaxedController::new(&layout, 12, settings).unwrap();
+    let adaptive = EstimatorSettings::in_flight(85.0);
+    let flying = CycleController::new(controller, &adaptive, &t, &z0).unwrap();
+    (t, z0, flying)
+}
+
+fn cycle_us(harmonics: &[u32]) -> f64 {
+    let (t, z0, mut flying) = rotor(harmonics);
+    let mut best = f64::INFINITY;
+    for batch in 0..40 {
+        let mut taken = 0.0;
+        for k in 0..50 {
+            let change = t.loads_for(flying.controller().control_volt()).unwrap();
+            let noise = |i: usize| f64::sin((i * i * 7 + k * 13 + batch) as f64);
+            let loads: Vec<f64> =
+                z0.iter().zip(&change).enumerate().map(|(i, (z, d))| z + d + noise(i)).collect();
+            let start = Instant::now();
+            black_box(flying.step(black_box(&loads)).unwrap());
+            taken += start.elapsed().as_nanos() as f64;
+        }
+        best = best.min(taken / 50.0 / 1e3);
+    }
+    best
+}
+
+fn cycles(criterion: &mut Criterion) {
+    for (name, harmonics) in [("one harmonic", vec![3]), ("2 to 5/rev", vec![2, 3, 4, 5])] {
+        let us = cycle_us(&harmonics);
+        println!("cycle, {name}: {us:.2} us, ratio to budget {:.2}", us / BUDGET_US);
+    }
+    let mut analyser = HarmonicAnalyser::new(6, 128, 2, &[4]).unwrap();
+    criterion.bench_function("sample of six channels", |bench| {
+        bench.iter(|| analyser.push(black_box(&[0.1; 6])).is_ok());
+    });
+}
+
+criterion_group!(benches, cycles);
+criterion_main!(benches);

@@ -1,0 +1,132 @@
+//! How wrong a constant T may be before the loop diverges.
+
+use crate::{ControlError, ControlLayout, Cost, FeedbackLaw, TMatrix};
+use std::ops::Range;
+
+/// The least error of T, one at a time, at which the spectral radius of (C.14) reaches 1 or the loads overshoot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TMargins {
+    /// Phase error common to all flaps, deg, the smaller of lag and lead; 180 where none diverges.
+    pub common_phase_deg: f64,
+    /// Gain of the rotor over that of T, common to all flaps; infinity where none up to 1000 diverges.
+    pub common_gain: f64,
+    /// Phase error of one flap alone, deg, flap by flap.
+    pub flap_phase_deg: Vec<f64>,
+    /// Gain of one flap alone over that of T, flap by flap.
+    pub flap_gain: Vec<f64>,
+    /// Common phase error from which the cost of the loads rises above the uncontrolled one on the way, deg; 180 where
+    /// none does.
+    pub common_overshoot_deg: f64,
+    /// The same of one flap alone, flap by flap.
+    pub flap_overshoot_deg: Vec<f64>,
+}
+
+/// Steps of the search for the first crossing; it is then bisected.
+const PHASE_STEPS: u32 = 180;
+const GAIN_STEPS: u32 = 120;
+const LARGEST_GAIN: f64 = 1000.0;
+const BISECTIONS: u32 = 30;
+const OVERSHOOT_CYCLES: u32 = 40;
+const ROUNDING: f64 = 1e-9;
+
+impl FeedbackLaw {
+    /// The margins of the T of a law that flies with fixed cycles.
+    ///
+    /// ```text
+    /// | 1 - gain g exp(i phi) | = 1    for a common error with rho = 0:  cos phi = gain/2,  g = 2/gain
+    /// ```
+    /// | argument | meaning | unit | range |
+    /// |---|---|---|---|
+    /// | `layout` | of the controls of T | - | |
+    /// | `rho` | control weight, held | 1/V^2 | >= 0 |
+    /// | `gain` | part of the way that a step goes | - | above 0, at most 1 |
+    ///
+    /// | `baseline` | loads `Z0` without control | nondimensional | one per row of T |
+    ///
+    /// With `rho = 0` an error of one flap alone has the same margin of convergence as one of all: `T0^+ T` is the error
+    /// itself. What tells them apart is the overshoot, where T is ill-conditioned.
+    ///
+    /// # Errors
+    /// A layout of other controls than T; as [`Self::relaxed_spectral_radius`].
+    pub fn margins(
+        &self,
+        layout: &ControlLayout,
+        rho: f64,
+        gain: f64,
+        baseline: &[f64],
+    ) -> Result<TMargins, ControlError> {
+        let controls = layout.len();
+        crate::error::check_length("controls of T", self.shape().1, controls)?;
+        let turned = |part: Range<usize>, size: &dyn Fn(&TMatrix) -> Result<f64, ControlError>| {
+            let sided = |side: f64| {
+                first_crossing(180.0, PHASE_STEPS, |deg| {
+                    size(&self.t().turned_within(part.clone(), 1.0, side * deg.to_radians())?)
+                })
+            };
+            Ok(sided(1.0)?.min(sided(-1.0)?))
+        };
+        let phase = |part| turned(part, &|there| self.relaxed_spectral_radius(rho, gain, there));
+        let overshoot = |part| turned(part, &|there| self.overshoot(rho, gain, there, baseline));
+        let largest = |part: Range<usize>| -> Result<f64, ControlError> {
+            let found = first_crossing(LARGEST_GAIN.ln(), GAIN_STEPS, |log| {
+                let stronger = self.t().turned_within(part.clone(), log.exp(), 0.0)?;
+                self.relaxed_spectral_radius(rho, gain, &stronger)
+            })?;
+            Ok(if found < LARGEST_GAIN.ln() { found.exp() } else { f64::INFINITY })
+        };
+        let width = controls / layout.flaps();
+        let flaps = || (0..layout.flaps()).map(|flap| flap * width..(flap + 1) * width);
+        Ok(TMargins {
+            common_phase_deg: phase(0..controls)?,
+            common_gain: largest(0..controls)?,
+            common_overshoot_deg: overshoot(0..controls)?,
+            flap_overshoot_deg: flaps().map(overshoot).collect::<Result<_, _>>()?,
+            flap_phase_deg: flaps().map(phase).collect::<Result<_, _>>()?,
+            flap_gain: flaps().map(largest).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// Largest cost of the loads in the first cycles from zero control, over that without control; what is above by rounding
+    /// is no overshoot.
+    fn overshoot(
+        &self,
+        rho: f64,
+        gain: f64,
+        there: &TMatrix,
+        baseline: &[f64],
+    ) -> Result<f64, ControlError> {
+        let before = Cost::of(baseline, self.load_weights(), &[], 0.0).loads;
+        let mut control_volt = vec![0.0; there.controls()];
+        let mut largest = 0.0_f64;
+        for _ in 0..OVERSHOOT_CYCLES {
+            let mut outputs = there.loads_for(&control_volt)?;
+            outputs.iter_mut().zip(baseline).for_each(|(output, z0)| *output += z0);
+            let aim = self.optimum_volt(rho, &control_volt, &outputs)?;
+            control_volt.iter_mut().zip(aim).for_each(|(here, to)| *here += gain * (to - *here));
+            let cost = Cost::of(&outputs, self.load_weights(), &[], 0.0).loads;
+            largest = largest.max(cost / before);
+        }
+        Ok(largest - ROUNDING)
+    }
+}
+
+/// Where a radius first reaches 1 between 0 and `end`; `end` if nowhere.
+fn first_crossing(
+    end: f64,
+    steps: u32,
+    radius: impl Fn(f64) -> Result<f64, ControlError>,
+) -> Result<f64, ControlError> {
+    let step = end / f64::from(steps);
+    for k in 1..=steps {
+        if radius(step * f64::from(k))? < 1.0 {
+            continue;
+        }
+        let (mut low, mut high) = (step * f64::from(k - 1), step * f64::from(k));
+        for _ in 0..BISECTIONS {
+            let middle = f64::midpoint(low, high);
+            *(if radius(middle)? < 1.0 { &mut low } else { &mut high }) = middle;
+        }
+        return Ok(high);
+    }
+    Ok(end)
+}

@@ -1,0 +1,219 @@
+//! The relaxed controller: one step of every cycle, no line search.
+
+use super::estimator::{check_outputs, set_flag};
+use super::program::DiscProgram;
+use crate::{ControlError, ControlLayout, LoadWeights, TMatrix, error};
+use nalgebra::{DMatrix, DVector};
+
+/// Weights and limits of a relaxed controller.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RelaxedSettings {
+    /// `W_Z`.
+    pub load_weights: LoadWeights,
+    /// `rho`, 1/V^2, 0 or above.
+    pub effort_weight: f64,
+    /// `s`, `S = s I`, 1/V^2, 0 or above.
+    pub rate_weight: f64,
+    /// Part of the way to the optimum that a step goes, above 0 and at most 1.
+    pub gain: f64,
+    /// Largest voltage amplitude of every pair of the layout, V; infinity for none.
+    pub amplitude_limit_volt: Vec<f64>,
+    /// Largest change of any voltage harmonic in a step, V; infinity for none.
+    pub rate_limit_volt: f64,
+}
+
+impl RelaxedSettings {
+    /// Equal loads, whole steps, no weight and no limit.
+    pub fn of_layout(layout: &ControlLayout) -> Self {
+        Self {
+            load_weights: LoadWeights::Identity,
+            effort_weight: 0.0,
+            rate_weight: 0.0,
+            gain: 1.0,
+            amplitude_limit_volt: vec![f64::INFINITY; layout.pairs()],
+            rate_limit_volt: f64::INFINITY,
+        }
+    }
+}
+
+/// One step of control a cycle, from T and the loads.
+///
+/// ```text
+/// J   = Z'WZ + rho u'u + du' S du,      Z = Z_here + T du
+/// u   <-  u_here + g c ( argmin J  over |u_p| <= U_p  -  u_here ),      c: the largest change is at most the rate
+/// ```
+/// - Without a limit that binds, `du = -g (T'WT + rho I + S)^-1 (T'W Z + rho u)`.
+/// - The optimum keeps the amplitudes; it is never a clipped one. The rate only shortens the step: every part of the way
+///   to an optimum of a convex cost lowers it.
+/// - *Start without a bump.* The control goes on from whatever acts ([`Self::engage`]).
+/// - *A load is lost*: its weight is 0. *A flap is lost*: its columns are left out, and its voltage goes to 0 within the
+///   rate.
+///
+/// Source: W. Johnson, NASA TP-1996 (1982), with the rate term and without (deterministic controllers); J. Shaw,
+/// *Higher harmonic blade pitch control for helicopter vibration reduction* (1980); D. Patt, L. Liu, P. Friedmann, J.
+/// American Helicopter Society 50 (2005) for the relaxed step. The limits are this project's.
+#[derive(Debug, Clone)]
+pub struct RelaxedController {
+    settings: RelaxedSettings,
+    weights: Vec<f64>,
+    is_load_lost: Vec<bool>,
+    is_flap_lost: Vec<bool>,
+    pairs_of_flap: usize,
+    control_volt: Vec<f64>,
+    /// Where the last step led; the next search starts there.
+    target: DVector<f64>,
+    program: DiscProgram,
+    weighted: DMatrix<f64>,
+    loads: DVector<f64>,
+    is_limited: bool,
+}
+
+impl RelaxedController {
+    /// A controller at zero control of `loads` loads.
+    ///
+    /// # Errors
+    /// [`ControlError::Length`], [`ControlError::OutOfRange`] of the settings.
+    pub fn new(
+        layout: &ControlLayout,
+        loads: usize,
+        settings: RelaxedSettings,
+    ) -> Result<Self, ControlError> {
+        error::check_not_negative("control weight rho (1/V^2)", settings.effort_weight)?;
+        error::check_not_negative("rate weight (1/V^2)", settings.rate_weight)?;
+        let gain = settings.gain;
+        error::check_range(
+            gain > 0.0 && gain <= 1.0,
+            "relaxation gain",
+            gain,
+            "above 0, at most 1",
+        )?;
+        let limits = &settings.amplitude_limit_volt;
+        error::check_length("amplitude limits", limits.len(), layout.pairs())?;
+        for &limit in limits.iter().chain([&settings.rate_limit_volt]) {
+            let what = "limit of amplitude or rate (V)";
+            error::check_range(limit > 0.0, what, limit, "above 0, infinity for none")?;
+        }
+        let size = layout.len();
+        Ok(Self {
+            weights: settings.load_weights.diagonal(loads)?,
+            is_load_lost: vec![false; loads],
+            is_flap_lost: vec![false; layout.flaps()],
+            pairs_of_flap: layout.harmonics().len(),
+            control_volt: layout.zero(),
+            target: DVector::zeros(size),
+            program: DiscProgram::new(settings.amplitude_limit_volt.clone()),
+            weighted: DMatrix::zeros(loads, size),
+            loads: DVector::zeros(loads),
+            is_limited: false,
+            settings,
+        })
+    }
+
+    /// Goes on from the control (volt) that acts.
+    ///
+    /// # Errors
+    /// [`ControlError::Length`], [`ControlError::NotFinite`].
+    pub fn engage(&mut self, control_volt: &[f64]) -> Result<(), ControlError> {
+        error::check_vector("control vector (volt)", control_volt, self.control_volt.len())?;
+        self.control_volt.copy_from_slice(control_volt);
+        // the search starts there, inside the discs
+        for (pair, radius) in self.program.radius.iter().enumerate() {
+            let here = &control_volt[2 * pair..2 * pair + 2];
+            let share = (radius / here[0].hypot(here[1]).max(f64::MIN_POSITIVE)).min(1.0);
+            self.target[2 * pair] = share * here[0];
+            self.target[2 * pair + 1] = share * here[1];
+        }
+        Ok(())
+    }
+
+    /// The next control, volt, from T (1/V) and the loads at the present control, measured or estimated.
+    ///
+    /// # Errors
+    /// [`ControlError::Length`], [`ControlError::NotFinite`]; the control then stays.
+    pub fn step(&mut self, t: &TMatrix, outputs: &[f64]) -> Result<&[f64], ControlError> {
+        let size = self.control_volt.len();
+        error::check_length("controls of the T matrix", t.controls(), size)?;
+        error::check_length("loads of the T matrix", t.loads(), self.weights.len())?;
+        check_outputs(outputs, &self.is_load_lost)?;
+        self.form(t, outputs);
+        self.is_limited = self.program.solve(&mut self.target);
+        let mut fastest = 0.0_f64;
+        for (to, from) in
+            self.target.as_slice().chunks_exact(2).zip(self.control_volt.chunks_exact(2))
+        {
+            fastest = fastest.max((to[0] - from[0]).hypot(to[1] - from[1]));
+        }
+        let gain = self.settings.gain;
+        let share = gain.min(self.settings.rate_limit_volt / fastest.max(f64::MIN_POSITIVE));
+        for (here, to) in self.control_volt.iter_mut().zip(&self.target) {
+            *here += share * (to - *here);
+        }
+        Ok(&self.control_volt)
+    }
+
+    /// The quadratic form of the next control.
+    fn form(&mut self, t: &TMatrix, outputs: &[f64]) {
+        let t = t.as_matrix();
+        let Self {
+            settings, weights, is_load_lost, program, weighted, loads, control_volt, ..
+        } = self;
+        weighted.copy_from(t);
+        loads.copy_from_slice(outputs);
+        for (i, mut row) in weighted.row_iter_mut().enumerate() {
+            row *= if is_load_lost[i] { 0.0 } else { weights[i] };
+            loads[i] = if is_load_lost[i] { 0.0 } else { loads[i] };
+        }
+        program.normal.gemm_tr(1.0, t, weighted, 0.0);
+        // J over the next control: Z at zero control, and the rate about the present one
+        for (column, volt) in t.column_iter().zip(control_volt.iter()) {
+            loads.axpy(-volt, &column, 1.0);
+        }
+        program.linear.gemv_tr(1.0, weighted, loads, 0.0);
+        let diagonal = settings.effort_weight + settings.rate_weight;
+        for (k, volt) in control_volt.iter().enumerate() {
+            program.normal[(k, k)] += diagonal;
+            program.linear[k] -= settings.rate_weight * volt;
+        }
+        let controls_of_flap = 2 * self.pairs_of_flap;
+        for (flap, _) in self.is_flap_lost.iter().enumerate().filter(|(_, lost)| **lost) {
+            for k in flap * controls_of_flap..(flap + 1) * controls_of_flap {
+                program.normal.row_mut(k).fill(0.0);
+                program.normal.column_mut(k).fill(0.0);
+                program.normal[(k, k)] = 1.0;
+                program.linear[k] = 0.0;
+            }
+        }
+    }
+
+    /// Gives a load (from 0) the weight 0, or its own again.
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for a load that there is not.
+    pub fn set_load_lost(&mut self, load: usize, is_lost: bool) -> Result<(), ControlError> {
+        set_flag(&mut self.is_load_lost, "load that is lost (from 0)", load, is_lost)
+    }
+
+    /// Leaves a flap (from 0) out, or takes it in again.
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for a flap that there is not.
+    pub fn set_flap_lost(&mut self, flap: usize, is_lost: bool) -> Result<(), ControlError> {
+        set_flag(&mut self.is_flap_lost, "flap that is lost (from 0)", flap, is_lost)
+    }
+
+    /// The control that acts, volt.
+    pub fn control_volt(&self) -> &[f64] {
+        &self.control_volt
+    }
+
+    /// Controls of a flap, positions in the control vector.
+    pub(super) fn controls_of(&self, flap: usize) -> std::ops::Range<usize> {
+        let width = 2 * self.pairs_of_flap;
+        flap * width..(flap + 1) * width
+    }
+
+    /// Whether a limit of an amplitude bound in the last step.
+    pub fn is_limited(&self) -> bool {
+        self.is_limited
+    }
+}

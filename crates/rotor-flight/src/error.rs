@@ -1,0 +1,49 @@
+//! What can go wrong.
+
+use hhc_control::ControlError;
+use preisach_dyn::PreisachError;
+use rotor_response::ResponseError;
+use rotor_study::StudyError;
+
+/// Rejected input and numerical failures of a flight.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FlightError {
+    /// A number outside its range.
+    #[error("{what} is {value}, expected {expected}")]
+    OutOfRange {
+        /// Name of the quantity, with its unit.
+        what: &'static str,
+        /// The value found.
+        value: f64,
+        /// The range expected.
+        expected: &'static str,
+    },
+    /// A trim of a knot.
+    #[error("the trim at an advance ratio of {advance_ratio}: {source}")]
+    Trim {
+        /// Of the knot.
+        advance_ratio: f64,
+        /// Its own error.
+        source: Box<StudyError>,
+    },
+    /// A rotor that cannot be linearised.
+    #[error("the linearised rotor at an advance ratio of {advance_ratio}: {source}")]
+    Response {
+        /// Of the knot.
+        advance_ratio: f64,
+        /// Its own error.
+        source: ResponseError,
+    },
+    /// An actuator.
+    #[error("the actuator of flap {flap} (from 0): {source}")]
+    Actuator {
+        /// Which one.
+        flap: usize,
+        /// Its own error.
+        source: PreisachError,
+    },
+    /// The controller.
+    #[error(transparent)]
+    Control(#[from] ControlError),
+}

@@ -1,0 +1,103 @@
+//! Flaps whose actuators are marched sample by sample.
+
+use crate::FlightError;
+use hhc_control::{ControlLayout, HarmonicAnalyser};
+use preisach_dyn::{ActuatorMemory, ActuatorModel, StartState, Stepper};
+use rotor_base::{Harmonic, HarmonicSeries};
+use std::f64::consts::TAU;
+
+/// Samples of a revolution, and harmonics of the motion that the rotor feels.
+const SAMPLES: usize = 128;
+const HARMONICS: u32 = 12;
+/// Change of the bias for a mean flap angle, V/deg, once a revolution: a few revolutions to centre.
+const BIAS_VOLT_PER_DEG: f64 = 2.0;
+
+/// The actuators of all flaps, each with its own memory.
+#[derive(Debug, Clone)]
+pub struct FlapMarch<'a> {
+    model: &'a ActuatorModel,
+    stepper: Stepper<'a>,
+    layout: ControlLayout,
+    memories: Vec<ActuatorMemory>,
+    bias_volt: Vec<f64>,
+    analysers: Vec<HarmonicAnalyser>,
+    /// Cosine and sine of every controlled harmonic at every sample.
+    waves: Vec<f64>,
+    clipped: usize,
+}
+
+impl<'a> FlapMarch<'a> {
+    /// Flaps at rest about a bias, V; `rev_hz` is the revolutions per second of the actuators' time.
+    ///
+    /// # Errors
+    /// [`FlightError::Actuator`], [`FlightError::Control`].
+    pub fn new(
+        model: &'a ActuatorModel,
+        layout: &ControlLayout,
+        rev_hz: f64,
+        bias_volt: f64,
+    ) -> Result<Self, FlightError> {
+        let located = |source| FlightError::Actuator { flap: 0, source };
+        let stepper = model.stepper(1.0 / (rev_hz * SAMPLES as f64)).map_err(located)?;
+        let memory = model.start(bias_volt, StartState::Rest).map_err(located)?;
+        let harmonics: Vec<u32> = (0..=HARMONICS).collect();
+        let analyser = HarmonicAnalyser::new(1, SAMPLES, 1, &harmonics)?;
+        let waves = (0..SAMPLES)
+            .flat_map(|k| {
+                let psi = TAU * k as f64 / SAMPLES as f64;
+                layout.harmonics().iter().map(move |&n| (f64::from(n) * psi).sin_cos())
+            })
+            .flat_map(|(sin, cos)| [cos, sin])
+            .collect();
+        Ok(Self {
+            model,
+            stepper,
+            layout: layout.clone(),
+            memories: vec![memory; layout.flaps()],
+            bias_volt: vec![bias_volt; layout.flaps()],
+            analysers: vec![analyser; layout.flaps()],
+            waves,
+            clipped: 0,
+        })
+    }
+
+    /// Marches one revolution under a control vector, V, and gives the motion of every flap, deg. A voltage beyond the range
+    /// of the actuator is held at its end, as an amplifier does.
+    ///
+    /// # Errors
+    /// [`FlightError::Actuator`]; [`FlightError::Control`] for a control vector of another layout.
+    pub fn revolve(&mut self, control_volt: &[f64]) -> Result<Vec<HarmonicSeries>, FlightError> {
+        self.layout.check(control_volt)?;
+        let width = 2 * self.layout.harmonics().len();
+        let range = self.model.range_volt;
+        let mut motions = Vec::with_capacity(self.memories.len());
+        for (flap, own) in control_volt.chunks_exact(width).enumerate() {
+            let mut motion = HarmonicSeries::zero(0);
+            for waves in self.waves.chunks_exact(width) {
+                let swing: f64 = waves.iter().zip(own).map(|(wave, volt)| wave * volt).sum();
+                let wanted = self.bias_volt[flap] + swing;
+                let volt = wanted.clamp(range.lowest_volt(), range.highest_volt());
+                self.clipped += usize::from(volt.to_bits() != wanted.to_bits());
+                let flap_deg = self
+                    .stepper
+                    .step(&mut self.memories[flap], volt, 0.0)
+                    .map_err(|source| FlightError::Actuator { flap, source })?;
+                if let Some(found) = self.analysers[flap].push(&[flap_deg])? {
+                    motion.mean = found[0];
+                    let pairs = found[2..].chunks_exact(2);
+                    motion.harmonics =
+                        pairs.map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect();
+                }
+            }
+            self.bias_volt[flap] = (self.bias_volt[flap] - BIAS_VOLT_PER_DEG * motion.mean)
+                .clamp(range.lowest_volt(), range.highest_volt());
+            motions.push(motion);
+        }
+        Ok(motions)
+    }
+
+    /// Samples of all flaps so far whose voltage was held at the end of the range.
+    pub fn clipped_samples(&self) -> usize {
+        self.clipped
+    }
+}
