@@ -80,16 +80,16 @@ fn faults(status: &Status) -> Vec<String> {
         let more = list.len().saturating_sub(NAMED);
         let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
         let first: Vec<&str> = list.iter().take(NAMED).map(String::as_str).collect();
-        let said = format!("{} {what}; {remedy}\n  {}{more}", list.len(), first.join("\n  "));
+        let said = format!("{what}: {}; {remedy}\n  {}{more}", list.len(), first.join("\n  "));
         (!list.is_empty()).then_some(said)
     };
     let again = "run the sweep again, which computes these alone, or leave them out with --partial";
     [
-        named(&status.missing, "cases have no result", again),
-        named(&status.damaged, "results are cut off or altered", again),
+        named(&status.missing, "cases without a result", again),
+        named(&status.damaged, "results that are cut off or altered", again),
         named(
             &status.foreign,
-            "files are results of no case of this sweep",
+            "files that are results of no case of this sweep",
             "they are of another sweep or version: remove them, or leave them out with --partial",
         ),
     ]
@@ -141,6 +141,10 @@ impl Merged {
 
 fn shown(cell: &Cell) -> String {
     match cell {
+        // the shortest text that reads back to the same bits
+        Cell::Number(value) if *value != 0.0 && !(1e-4..1e9).contains(&value.abs()) => {
+            format!("{value:e}")
+        }
         Cell::Number(value) => format!("{value}"),
         Cell::Text(text) => quoted(text),
         Cell::Nothing(()) => String::new(),

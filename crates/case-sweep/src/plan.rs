@@ -6,27 +6,30 @@ use crate::{ReadCase, Runner, SweepError, SweepFile};
 use measured_data::RonIndex;
 use measured_data::problem::{Fault, Place, Problem, Problems};
 use rayon::prelude::*;
+use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The cases of a sweep, in the order of its table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plan {
     /// Fields of the axes.
     pub fields: Vec<String>,
     /// The cases.
     pub cases: Vec<PlannedCase>,
     /// The base case, canonical.
+    #[serde(skip)]
     base: String,
 }
 
 /// A case of a plan.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct PlannedCase {
     /// blake3 of the canonical case, the version of the model and the files that the case names.
     pub key: String,
     /// Its value on each axis, RON.
     pub values: Vec<String>,
     /// Why it cannot be run, though each of its values can: values that do not go together.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
 }
 

@@ -2,12 +2,13 @@
 
 use crate::store::{Outcome, State, Store, StoredCase};
 use crate::{Plan, PlannedCase, ReadCase, Runner, Shard, SweepError};
+use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// What a run did.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
 pub struct Ran {
     /// Cases of the part.
     pub cases: usize,

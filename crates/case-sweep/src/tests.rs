@@ -215,7 +215,7 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     ran(&plan, "1/2", &store);
     let error = merge(&plan, &store, false).unwrap_err().to_string();
     assert!(
-        error.contains("6 cases have no result") && error.contains(&plan.cases[1].key),
+        error.contains("cases without a result: 6;") && error.contains(&plan.cases[1].key),
         "{error}"
     );
     assert!(error.contains("and 1 more") && error.contains("--partial"), "{error}");
@@ -227,7 +227,7 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     let text = Source::read(&path).unwrap().text;
     write_atomic(&path, &text.as_bytes()[..text.len() / 2]).unwrap();
     let error = merge(&plan, &store, false).unwrap_err().to_string();
-    assert!(error.contains("1 results are cut off") && error.contains(key.as_str()), "{error}");
+    assert!(error.contains("cut off or altered: 1;") && error.contains(key.as_str()), "{error}");
     assert_eq!(store.get(key).0, State::Damaged);
     let again = ran(&plan, "1/1", &store);
     assert_eq!((again.computed, again.damaged), (1, vec![key.clone()]));
@@ -235,7 +235,7 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     // a result of another sweep
     ran(&swept("(field: \"low\", values: [0.25])"), "1/1", &store);
     let error = merge(&plan, &store, false).unwrap_err().to_string();
-    assert!(error.contains("1 files are results of no case"), "{error}");
+    assert!(error.contains("no case of this sweep: 1;"), "{error}");
     assert_eq!(merge(&plan, &store, true).unwrap().cases.len(), 12);
     // what a killed process was writing is no result
     write_atomic(&path.with_file_name(".hhc-x"), b"{").unwrap();

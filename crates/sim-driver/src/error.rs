@@ -2,6 +2,7 @@
 
 use crate::problem::{Fault, Place, Problem, Problems};
 use actuator_gap::DiagnosisError;
+use case_sweep::SweepError;
 use flap_aero::AeroError;
 use measured_data::DataError;
 use preisach_dyn::PreisachError;
@@ -22,6 +23,10 @@ pub enum SimError {
     /// Files with problems, every one of them; a file that cannot be written.
     #[error(transparent)]
     Data(#[from] DataError),
+
+    /// Results of a sweep that are missing, damaged or foreign; a part of its cases that is none.
+    #[error(transparent)]
+    Sweep(SweepError),
 
     // ---- models; the family depends on the source ----
     /// The actuator model or its identification.
@@ -157,14 +162,18 @@ impl SimError {
     fn family(&self) -> Family {
         match self {
             Self::WakeDiverged { .. } => Family::NumericalFailure,
-            Self::NotReproduced { .. } => Family::DataMismatch,
+            Self::NotReproduced { .. } | Self::Sweep(SweepError::Incomplete(_)) => {
+                Family::DataMismatch
+            }
             Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
             Self::Actuator { source, .. }
             | Self::Loop { source, .. }
             | Self::Diagnosis { source: DiagnosisError::Actuator(source), .. } => {
                 actuator_family(source)
             }
-            Self::Data(_) | Self::Section(_) | Self::Diagnosis { .. } => Family::RejectedInput,
+            Self::Data(_) | Self::Sweep(_) | Self::Section(_) | Self::Diagnosis { .. } => {
+                Family::RejectedInput
+            }
             Self::Study { source, .. } => study_family(source),
         }
     }
@@ -227,6 +236,15 @@ fn trim_family(error: &TrimError) -> Family {
         | TrimError::NoDescent { .. } => Family::RejectedInput,
         TrimError::Response(source) => response_family(source),
         _ => Family::NumericalFailure,
+    }
+}
+
+impl From<SweepError> for SimError {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Data(error) => Self::Data(error),
+            error => Self::Sweep(error),
+        }
     }
 }
 

@@ -1,4 +1,8 @@
-//! A case at several advance ratios, each trim started from the last.
+//! A case at several advance ratios, each trim started from the last; the cases of a sweep, each on its own.
+
+mod runner;
+
+pub use runner::CaseRunner;
 
 use crate::SimError;
 use crate::case::{LoadedCase, MeasuredRotor};
@@ -33,6 +37,14 @@ pub fn continued_trim(
     rotor_study::continued_trim(&loaded.case, start).map_err(|error| {
         loaded.located(error).in_doubt(loaded.in_words(loaded.case.value_warnings()))
     })
+}
+
+/// Ends in failure what is no solution, after what was found is stored and shown.
+pub(crate) fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
+    if diverged {
+        return Err(SimError::WakeDiverged { place: loaded.index.place("inflow.model") });
+    }
+    Ok(())
 }
 
 /// What is found at one advance ratio.
