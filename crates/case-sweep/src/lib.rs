@@ -7,7 +7,8 @@
 //! | the sweep file: axes and sampling | `file` |
 //! | values of the axes of every case | `sample` |
 //! | the cases of a sweep with their keys | `plan` |
-//! | results on disk, each with its own hash; what is there, missing, damaged, foreign | `store` |
+//! | results on disk, each with its own hash | `store` |
+//! | what is there, missing, damaged, foreign | `status` |
 //! | running what is missing, on all threads | `run` |
 //! | one table of all results | `merge` |
 //! | the script of an array of Slurm, the part of a task | `shard` |
@@ -21,6 +22,7 @@ mod plan;
 mod run;
 mod sample;
 mod shard;
+mod status;
 mod store;
 #[cfg(test)]
 mod tests;
@@ -31,7 +33,8 @@ pub use merge::{Merged, MergedCase, merge};
 pub use plan::{Plan, PlannedCase, plan};
 pub use run::{Done, Pace, Ran, run};
 pub use shard::{Shard, array_script};
-pub use store::{Cell, Outcome, State, Status, Store, StoredCase, case_key};
+pub use status::{Status, status};
+pub use store::{Cell, Outcome, State, Store, StoredCase, case_key};
 
 use measured_data::problem::Problems;
 

@@ -1,6 +1,7 @@
 //! One table of all results.
 
-use crate::store::{Cell, Outcome, Status, Store};
+use crate::status::{Status, status};
+use crate::store::{Cell, Outcome, Store};
 use crate::{Plan, SweepError};
 use serde::{Serialize, Serializer};
 use std::fmt::Write as _;
@@ -49,7 +50,7 @@ fn members<S: Serializer>(pairs: &[(String, Cell)], to: S) -> Result<S::Ok, S::E
 /// [`SweepError::Incomplete`] with the results that are missing, damaged or of no case, unless `partial` leaves them out.
 pub fn merge(plan: &Plan, store: &Store, partial: bool) -> Result<Merged, SweepError> {
     if !partial {
-        let faults = faults(&store.status(plan));
+        let faults = faults(&status(store, plan));
         if !faults.is_empty() {
             return Err(SweepError::Incomplete(faults));
         }

@@ -64,6 +64,9 @@ fn varied<'a, R: Runner>(
     Ok(text)
 }
 
+/// Key and values of a case, and why it is refused.
+type Taken = (String, Vec<String>, Option<Problems>);
+
 /// What a case text is: read, or refused.
 type Read = Result<(String, Vec<String>), Problems>;
 
@@ -92,8 +95,7 @@ pub fn plan<R: Runner>(file: &SweepFile, base: String, runner: &R) -> Result<Pla
             Err(problems) => (case_key(runner.version(), &text, &[]), texts, Some(problems)),
         })
     };
-    let found: Vec<Result<(String, Vec<String>, Option<Problems>), usize>> =
-        samples.par_iter().map(read_one).collect();
+    let found: Vec<Result<Taken, usize>> = samples.par_iter().map(read_one).collect();
     let mut alone = Alone { base: &empty.base, runner, read: BTreeMap::new() };
     let mut problems = Problems::default();
     let mut cases = Vec::with_capacity(found.len());

@@ -70,11 +70,8 @@ fn latin_hypercube(axes: &[Axis], count: usize, seed: u64) -> Vec<Vec<Value>> {
     let columns: Vec<Vec<Value>> = axes
         .iter()
         .map(|axis| {
-            let parts = shuffled(count, &mut random);
-            let share = |part: usize, random: &mut ChaCha8Rng| {
-                (part as f64 + random.random::<f64>()) / count as f64
-            };
-            parts.into_iter().map(|part| at_share(axis, share(part, &mut random))).collect()
+            let parts = shuffled(count, &mut random).into_iter();
+            parts.map(|part| within(axis, part, count, random.random())).collect()
         })
         .collect();
     (0..count).map(|case| columns.iter().map(|column| column[case].clone()).collect()).collect()
@@ -84,20 +81,19 @@ fn latin_hypercube(axes: &[Axis], count: usize, seed: u64) -> Vec<Vec<Value>> {
 fn shuffled(count: usize, random: &mut impl Rng) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
     for i in (1..count).rev() {
-        order.swap(i, random.random_range(0..=i as u64) as usize);
+        let other = random.random_range(0..=i as u64);
+        order.swap(i, usize::try_from(other).unwrap_or(i));
     }
     order
 }
 
-/// The value of an axis at a share, 0 to 1, of the way along it.
-fn at_share(axis: &Axis, share: f64) -> Value {
+/// The value of an axis in one of `count` equal parts, a share from 0 to 1 into it.
+fn within(axis: &Axis, part: usize, count: usize, share: f64) -> Value {
     match &axis.values {
-        AxisValues::List(values) => {
-            let at = (share * values.len() as f64).floor() as usize;
-            values[at.min(values.len() - 1)].clone()
-        }
+        AxisValues::List(values) => values[part * values.len() / count].clone(),
         AxisValues::Range { from, to, place, .. } => {
-            (number(from + (to - from) * share), place.clone())
+            let way = (part as f64 + share) / count as f64;
+            (number(from + (to - from) * way), place.clone())
         }
     }
 }
@@ -151,14 +147,14 @@ mod tests {
         let of = file(vec![range(1.0, 3.0, 2), list(&["A", "B"]), range(0.0, 1.0, 2)], sampling);
         let all = texts(&of);
         for (column, from, span) in [(0, 1.0, 2.0), (2, 0.0, 1.0)] {
-            let part = |case: &Vec<String>| {
-                let value: f64 = case[column].parse().unwrap();
-                ((value - from) / span * 40.0).floor() as usize
-            };
-            let mut parts: Vec<usize> = all.iter().map(part).collect();
-            assert_ne!(parts, (0..40).collect::<Vec<_>>());
-            parts.sort_unstable();
-            assert_eq!(parts, (0..40).collect::<Vec<_>>());
+            let place =
+                |case: &Vec<String>| 40.0 * (case[column].parse::<f64>().unwrap() - from) / span;
+            let mut places: Vec<f64> = all.iter().map(place).collect();
+            assert!(!places.is_sorted());
+            places.sort_by(f64::total_cmp);
+            for (part, place) in places.into_iter().enumerate() {
+                assert!((part as f64..=part as f64 + 1.0).contains(&place), "{part}: {place}");
+            }
         }
         assert_eq!(all.iter().filter(|case| case[1] == "A").count(), 20);
         assert_eq!(all, texts(&of));

@@ -1,13 +1,12 @@
 //! Results on disk: `results/<first two of the key>/<key>`, each whole, with its own hash.
 
-use crate::{Found, Plan, SweepError};
-use measured_data::{Source, write_atomic};
+use crate::{Found, SweepError};
+use measured_data::{DataError, Source, write_atomic};
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Folder of the results below that of the sweep.
-const RESULTS: &str = "results";
+pub(crate) const RESULTS: &str = "results";
 
 /// A value of a column.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,7 +113,7 @@ impl StoredCase {
 /// The folder of a sweep.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Store {
-    folder: PathBuf,
+    pub(crate) folder: PathBuf,
 }
 
 /// How a result is.
@@ -130,23 +129,6 @@ pub enum State {
     Missing,
 }
 
-/// What is there of a sweep.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
-pub struct Status {
-    /// Cases of different keys.
-    pub cases: usize,
-    /// Results with numbers.
-    pub found: usize,
-    /// Keys of results with a reason instead, and the reason.
-    pub failed: BTreeMap<String, String>,
-    /// Keys of results that are cut off or altered.
-    pub damaged: Vec<String>,
-    /// Keys without a result.
-    pub missing: Vec<String>,
-    /// Files among the results that are of no case of the sweep.
-    pub foreign: Vec<String>,
-}
-
 impl Store {
     /// The store in a folder, which need not be there yet.
     pub fn new(folder: &Path) -> Self {
@@ -154,7 +136,7 @@ impl Store {
     }
 
     /// The file of a key.
-    fn path(&self, key: &str) -> PathBuf {
+    pub(crate) fn path(&self, key: &str) -> PathBuf {
         let start: String = key.chars().take(2).collect();
         self.folder.join(RESULTS).join(start).join(key)
     }
@@ -162,7 +144,8 @@ impl Store {
     /// The result of a key and its state.
     pub fn get(&self, key: &str) -> (State, Option<StoredCase>) {
         let path = self.path(key);
-        let read = path.is_file().then(|| Source::read(&path).ok());
+        // a link may lead anywhere: its file is no result of this folder
+        let read = path.is_file().then(|| Source::read(&path).ok().filter(|_| !path.is_symlink()));
         let Some(source) = read else { return (State::Missing, None) };
         let stored = source.and_then(|source| StoredCase::of(&source.text, key));
         let state = match stored.as_ref().map(|stored| &stored.outcome) {
@@ -179,50 +162,13 @@ impl Store {
     /// That it cannot be written: a folder without permission, a full disk.
     pub fn put(&self, stored: &StoredCase) -> Result<(), SweepError> {
         let path = self.path(&stored.key());
-        let text = stored.text().map_err(|error| measured_data::DataError::NotWritten {
-            path: path.clone(),
-            reason: error.to_string(),
-        })?;
-        Ok(write_atomic(&path, text.as_bytes())?)
-    }
-
-    /// What is there of a plan.
-    pub fn status(&self, plan: &Plan) -> Status {
-        let mut status = Status { foreign: self.foreign(plan), ..Status::default() };
-        for case in plan.distinct() {
-            status.cases += 1;
-            let key = case.key.clone();
-            match self.get(&case.key) {
-                (State::Found, _) => status.found += 1,
-                (State::Damaged, _) => status.damaged.push(key),
-                (State::Missing, _) => status.missing.push(key),
-                (State::Failed, stored) => {
-                    if let Some(Outcome::Failed { reason }) = stored.map(|stored| stored.outcome) {
-                        status.failed.insert(key, reason);
-                    }
-                }
-            }
+        let failed = |reason: String| DataError::NotWritten { path: path.clone(), reason };
+        let text = stored.text().map_err(|error| failed(error.to_string()))?;
+        if path.is_symlink() {
+            // else the file that it leads to would be written
+            std::fs::remove_file(&path).map_err(|error| failed(error.to_string()))?;
         }
-        status
-    }
-
-    /// Files among the results that are of no case of the plan; what a killed run was writing begins with a dot and is none.
-    fn foreign(&self, plan: &Plan) -> Vec<String> {
-        let root = self.folder.join(RESULTS);
-        let keys: BTreeSet<PathBuf> = plan.cases.iter().map(|case| self.path(&case.key)).collect();
-        let inside = |folder: &Path| {
-            let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
-            let shown = entries.filter(|e| !e.file_name().to_string_lossy().starts_with('.'));
-            shown.map(|entry| entry.path()).collect::<Vec<_>>()
-        };
-        let parts = inside(&root);
-        let files = parts
-            .iter()
-            .flat_map(|part| if part.is_dir() { inside(part) } else { vec![part.clone()] });
-        let foreign = files.filter(|file| !keys.contains(file));
-        let mut names: Vec<String> = foreign.map(|file| file.display().to_string()).collect();
-        names.sort();
-        names
+        Ok(write_atomic(&path, text.as_bytes())?)
     }
 }
 
@@ -284,6 +230,24 @@ mod tests {
         let other = format!("00{}", &key[2..]);
         write_atomic(&store.path(&other), text.as_bytes()).unwrap();
         assert_eq!(store.get(&other).0, State::Damaged);
+    }
+
+    /// A link in the place of a result leads out of the folder: nothing is read from there nor written.
+    #[cfg(unix)]
+    #[test]
+    fn a_result_is_no_link() {
+        let (place, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        let (store, stored) = (Store::new(place.path()), stored());
+        let (path, outside) = (store.path(&stored.key()), other.path().join("file"));
+        let text = stored.text().unwrap();
+        write_atomic(&outside, text.as_bytes()).unwrap();
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::os::unix::fs::symlink(&outside, &path).unwrap();
+        assert_eq!(store.get(&stored.key()).0, State::Damaged);
+        write_atomic(&outside, b"mine").unwrap();
+        store.put(&stored).unwrap();
+        assert_eq!(Source::read(&outside).unwrap().text, "mine");
+        assert_eq!(store.get(&stored.key()).0, State::Found);
     }
 
     #[test]

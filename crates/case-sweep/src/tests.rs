@@ -2,7 +2,7 @@
 
 use crate::{
     Cell, Found, Plan, ReadCase, Runner, Shard, State, Store, SweepError, merge, plan,
-    read_sweep_file, run,
+    read_sweep_file, run, status,
 };
 use measured_data::problem::{Fault, Problems};
 use measured_data::{Folder, Source, read_ron, ron_text, write_atomic};
@@ -184,7 +184,7 @@ fn failed_cases_are_results_with_their_reason() {
         "{csv}"
     );
     assert!(lines[10].starts_with("10,1.9,2.5,1,,2.179"), "{csv}");
-    assert_eq!(store.status(&plan).failed.len(), 9);
+    assert_eq!(status(&store, &plan).failed.len(), 9);
 }
 
 /// Shards in any order, thread counts, one process: the same bytes.
@@ -239,7 +239,7 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     assert_eq!(merge(&plan, &store, true).unwrap().cases.len(), 12);
     // what a killed process was writing is no result
     write_atomic(&path.with_file_name(".hhc-x"), b"{").unwrap();
-    assert_eq!(store.status(&plan).foreign.len(), 1);
+    assert_eq!(status(&store, &plan).foreign.len(), 1);
 }
 
 proptest! {

@@ -3,13 +3,13 @@
 use super::write_texts;
 use crate::SimError;
 use crate::case::load_case;
+use crate::case_runner::CaseRunner;
 use crate::files::{Folder, Source, missing_file, refuse_unwritable};
 use crate::output::{Format, json, print, table};
 use crate::problem::Problem;
 use crate::progress::Progress;
-use crate::sweep::CaseRunner;
 use case_sweep::{
-    Done, Pace, Plan, Ran, Shard, Store, array_script, merge, plan, read_sweep_file, run,
+    Done, Pace, Plan, Ran, Shard, Store, array_script, merge, plan, read_sweep_file, run, status,
 };
 use clap::{Args, Subcommand};
 use std::io::IsTerminal;
@@ -193,7 +193,7 @@ fn ran_text(ran: &Ran, out: &Path) -> String {
 }
 
 fn show_status(sweep: &Sweep, format: Format) -> Result<(), SimError> {
-    let status = sweep.store.status(&sweep.plan);
+    let status = status(&sweep.store, &sweep.plan);
     if format == Format::Json {
         return print(&json(&status)?);
     }

@@ -1,8 +1,4 @@
-//! A case at several advance ratios, each trim started from the last; the cases of a sweep, each on its own.
-
-mod runner;
-
-pub use runner::CaseRunner;
+//! A case at several advance ratios, each trim started from the last.
 
 use crate::SimError;
 use crate::case::{LoadedCase, MeasuredRotor};

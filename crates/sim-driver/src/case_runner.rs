@@ -8,7 +8,7 @@ use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
 use crate::results::{ControlLine, Figures, flap_name, set_name};
 use crate::run::run_trimmed;
-use crate::sweep::continued_trim;
+use crate::sweep::{continued_trim, refuse_diverged};
 use case_sweep::{Cell, Found, ReadCase, Runner};
 use rotor_base::RotorScales;
 use rotor_study::{HubLoads, WakeStatus};
@@ -86,7 +86,7 @@ impl CaseRunner {
         let actuators = actuators_with(loaded, bench.as_deref())?;
         let trimmed = continued_trim(loaded, None)?;
         let outcome = run_trimmed(loaded, actuators, trimmed, &Progress::hidden())?;
-        super::refuse_diverged(loaded, outcome.trimmed.wake_diverged())?;
+        refuse_diverged(loaded, outcome.trimmed.wake_diverged())?;
         let figures = outcome.figures();
         let columns = columns(&figures, &loaded.case.scales());
         Ok(Found { columns, warnings: figures.warnings })
