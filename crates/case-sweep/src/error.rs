@@ -16,6 +16,9 @@ pub enum SweepError {
     /// The part of the cases that is asked for is none.
     #[error("{0}")]
     Shard(String),
+    /// What a page shall show is not there.
+    #[error("{0}")]
+    Choice(String),
 }
 
 impl From<Problems> for SweepError {

@@ -11,6 +11,7 @@
 //! | what is there, missing, damaged, foreign | `status` |
 //! | running what is missing, on all threads | `run` |
 //! | one table of all results | `merge` |
+//! | its page: maps over two axes, parallel coordinates, reduction against power | `page` |
 //! | the script of an array of Slurm, the part of a task | `shard` |
 //!
 //! No result depends on thread, order or shard: a case is read from its own text and starts from no other.
@@ -18,6 +19,7 @@
 mod error;
 mod file;
 mod merge;
+mod page;
 mod plan;
 mod run;
 mod sample;
@@ -30,6 +32,7 @@ mod tests;
 pub use error::SweepError;
 pub use file::{Axis, AxisValues, Sampling, SweepFile, read_sweep_file};
 pub use merge::{Merged, MergedCase, merge};
+pub use page::PageChoice;
 pub use plan::{Plan, PlannedCase, plan};
 pub use run::{Done, Pace, Ran, run};
 pub use shard::{Shard, array_script};

@@ -9,7 +9,8 @@ use crate::output::{Format, json, print, table};
 use crate::problem::Problem;
 use crate::progress::Progress;
 use case_sweep::{
-    Done, Pace, Plan, Ran, Shard, Store, array_script, merge, plan, read_sweep_file, run, status,
+    Done, Pace, PageChoice, Plan, Ran, Shard, Store, array_script, merge, plan, read_sweep_file,
+    run, status,
 };
 use clap::{Args, Subcommand};
 use std::io::IsTerminal;
@@ -39,6 +40,23 @@ pub enum SweepAction {
         /// Leave out what is missing, damaged or foreign.
         #[arg(long)]
         partial: bool,
+    },
+    /// Write sweep.html: maps over two axes, parallel coordinates, reduction of J against power.
+    Report {
+        #[command(flatten)]
+        sweep: SweepArgs,
+        /// Axis to the right; the first with several numbers if left out.
+        #[arg(long, value_name = "FIELD")]
+        x: Option<String>,
+        /// Axis upwards; the next one if left out.
+        #[arg(long, value_name = "FIELD")]
+        y: Option<String>,
+        /// Columns of sweep.csv to show; every reduction of J if left out.
+        #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+        of: Vec<String>,
+        /// Only cases with this value on an axis; once for each axis.
+        #[arg(long, value_name = "FIELD=VALUE")]
+        at: Vec<String>,
     },
     /// Print the sbatch script of an array that runs the sweep.
     Slurm {
@@ -84,6 +102,10 @@ pub(super) fn sweep(action: &SweepAction) -> Result<(), SimError> {
         }
         SweepAction::Status(args) => show_status(&Sweep::of(args)?, args.format),
         SweepAction::Merge { sweep, partial } => write_merged(&Sweep::of(sweep)?, *partial),
+        SweepAction::Report { sweep, x, y, of, at } => {
+            let (x, y, of, at) = (x.clone(), y.clone(), of.clone(), at.clone());
+            write_page(sweep, &PageChoice { x, y, of, at })
+        }
         SweepAction::Slurm { sweep, tasks, cpus } => print_script(sweep, *tasks, *cpus),
     }
 }
@@ -133,11 +155,12 @@ fn show_plan(sweep: &Sweep, format: Format) -> Result<(), SimError> {
     let cases = sweep.plan.cases.len();
     let distinct = sweep.plan.distinct().len();
     let refused = sweep.plan.cases.iter().filter(|case| case.refused.is_some()).count();
-    let mut text = format!("{}\n{cases} cases, {distinct} of them different", table(&header, rows));
-    if refused > 0 {
-        text += &format!("; in {refused} the values do not go together: they will fail");
-    }
-    print(&(text + "\n"))
+    let together = match refused {
+        0 => String::new(),
+        _ => format!("; in {refused} the values do not go together: they will fail"),
+    };
+    let table = table(&header, rows);
+    print(&format!("{table}\n{cases} cases, {distinct} of them different{together}\n"))
 }
 
 /// Time between two lines of a log, s.
@@ -223,6 +246,15 @@ fn write_merged(sweep: &Sweep, partial: bool) -> Result<(), SimError> {
         sweep.out.join("sweep.csv").display(),
         failed_text(failed.into_iter())
     ))
+}
+
+/// Writes the page of the results that are there.
+fn write_page(args: &SweepArgs, choice: &PageChoice) -> Result<(), SimError> {
+    let sweep = Sweep::of(args)?;
+    let title = format!("Sweep {}", args.file.display());
+    let page = merge(&sweep.plan, &sweep.store, true)?.page(&title, choice)?;
+    write_texts(&sweep.out, [("sweep.html", page)])?;
+    print(&format!("Report in {}\n", sweep.out.join("sweep.html").display()))
 }
 
 /// Prints the script of an array; a sweep file with a fault is told before anything is submitted.

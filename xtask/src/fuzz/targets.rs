@@ -1,0 +1,179 @@
+//! The readers, and valid inputs to begin with.
+
+use std::path::{Path, PathBuf};
+
+use case_sweep::{StoredCase, read_sweep_file};
+use sim_driver::case::read_case;
+use sim_driver::files::{Folder, Source, read_airfoil, read_dataset};
+use sim_driver::import::{ColumnOptions, ImportRequest, SourceKind, import};
+use sim_driver::results::{StoredResult, figures};
+
+use crate::XtaskError;
+use crate::files::read_bytes;
+
+/// Whether a reader takes an input.
+type Read = Box<dyn Fn(&[u8]) -> bool>;
+
+/// A reader.
+pub(super) struct Target {
+    /// Its name.
+    pub(super) reader: &'static str,
+    /// Valid inputs.
+    pub(super) valid: Vec<Vec<u8>>,
+    /// Gives it an input; whether it was taken.
+    pub(super) read: Read,
+}
+
+/// Most bytes of an input: a part of a long file is as good.
+const MOST_BYTES: usize = 40_000;
+
+fn text(bytes: &[u8]) -> Source {
+    Source { name: "input".to_owned(), text: String::from_utf8_lossy(bytes).into_owned() }
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, XtaskError> {
+    let mut bytes = read_bytes(path)?;
+    bytes.truncate(MOST_BYTES);
+    Ok(bytes)
+}
+
+/// A reader of a file on disk: the input is written there before it is read.
+#[expect(clippy::disallowed_methods, reason = "an input that cannot be written is no input")]
+fn on_disk(path: PathBuf, read: impl Fn() -> bool + 'static) -> Read {
+    Box::new(move |bytes| std::fs::write(&path, bytes).is_ok() && read())
+}
+
+/// All readers; those of files have a folder below `place`.
+pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
+    let fixtures = root.join("fixtures");
+    let all = |names: &[&str]| -> Result<Vec<Vec<u8>>, XtaskError> {
+        names.iter().map(|name| bytes_of(&fixtures.join(name))).collect()
+    };
+    let cases = Folder::Disk(fixtures.join("cases"));
+    let earlier = root.join("crates/sim-driver/tests/data/earlier_result/result.json");
+    let sweep = b"(base: \"c.ron\", axes: [(field: \"a.b[0]\", values: [1, X(y: 2), [3]]), (field: \"x\", from: 1, to: 2, count: 3)], sampling: LatinHypercube(count: 9, seed: 1))";
+    let stored = b"\"version\":\"1\",\"inputs\":[\"a\"],\"case\":\"(x: 1)\",\"outcome\":{\"found\":{\"columns\":[[\"a_deg\",1.5e-3],[\"b\",\"w\"],[\"c\",null]],\"warnings\":[]}}}\n";
+    let mut targets = vec![
+        Target {
+            reader: "case",
+            valid: all(&[
+                "cases/paper_mu030.ron",
+                "cases/stalled_mu030.ron",
+                "cases/hart_ii_bl.ron",
+                "cases/controllers_mu030.ron",
+            ])?,
+            read: Box::new(move |bytes| read_case(&text(bytes), &cases).is_ok()),
+        },
+        Target {
+            reader: "sweep file",
+            valid: vec![sweep.to_vec(), b"(base: \"c.ron\", rows: \"r.csv\")".to_vec()],
+            read: Box::new(|bytes| {
+                read_sweep_file(&text(bytes), &Folder::Disk("no-such-folder".into())).is_ok()
+            }),
+        },
+        Target {
+            reader: "stored case",
+            valid: vec![stored.to_vec()],
+            // the hash is made to fit, or the rest would never be read
+            read: Box::new(|bytes| {
+                let rest = text(bytes).text;
+                let hash = blake3::hash(format!("{{{}", rest.trim_end_matches('\n')).as_bytes());
+                let whole = format!("{{\"hash\":\"{}\",{rest}", hash.to_hex());
+                StoredCase::of(&whole, "no key").is_some()
+            }),
+        },
+        Target {
+            reader: "result",
+            valid: vec![bytes_of(&earlier)?],
+            // beyond the hash, which refuses all of them
+            read: Box::new(|bytes| {
+                let stored = serde_json::from_str::<StoredResult>(&text(bytes).text).ok();
+                stored.is_some_and(|stored| {
+                    let setting = stored.setting();
+                    setting
+                        .is_ok_and(|setting| !figures(&stored.result, &setting).control.is_empty())
+                })
+            }),
+        },
+        Target {
+            reader: "C81",
+            valid: all(&["airfoils/naca0012_synthetic.c81"])?,
+            read: Box::new(|bytes| read_airfoil(&text(bytes)).is_ok()),
+        },
+    ];
+    for (reader, of, own) in [
+        ("dataset.ron", "points/ignored_hysteresis", "dataset.ron"),
+        ("points CSV", "points/stall_naca0012", "points.csv"),
+        ("bench", "bench/apa500l_synthetic", "dataset.ron"),
+        ("record CSV", "bench/apa500l_synthetic", "sine_1hz_25v.csv"),
+    ] {
+        let folder = place.join(reader.replace(' ', "_"));
+        copy(&fixtures.join(of), &folder, own)?;
+        let data = Folder::Disk(folder.clone());
+        targets.push(Target {
+            reader,
+            valid: vec![bytes_of(&fixtures.join(of).join(own))?],
+            read: on_disk(folder.join(own), move || read_dataset(&data).is_ok()),
+        });
+    }
+    for (reader, source, seed) in [
+        ("import CSV", SourceKind::Csv, "bench/apa500l_synthetic/sine_20hz_25v.csv"),
+        ("import MAT", SourceKind::Mat, "mat/bench_struct.mat"),
+        ("import FORC", SourceKind::MicromagForc, "measured/forc/hchb_forc"),
+    ] {
+        let file = place.join(reader.replace(' ', "_"));
+        let out = place.join(format!("{}_out", reader.replace(' ', "_")));
+        let request = request(&file, &out, source);
+        targets.push(Target {
+            reader,
+            valid: all(&[seed])?,
+            read: on_disk(file, move || {
+                let taken = import(&request).is_ok();
+                // the next one writes there anew
+                let _ = std::fs::remove_dir_all(&out);
+                taken
+            }),
+        });
+    }
+    Ok(targets)
+}
+
+/// A data folder that is quick to read: the file that is changed, and the others that go with it.
+#[expect(clippy::disallowed_methods, reason = "a copy of a fixture")]
+fn copy(from: &Path, to: &Path, own: &str) -> Result<(), XtaskError> {
+    let failed = |source| XtaskError::Write { path: to.to_path_buf(), source };
+    std::fs::create_dir_all(to).map_err(failed)?;
+    let is_bench_record = own.starts_with("sine");
+    if is_bench_record {
+        let dataset = format!(
+            "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"{own}\", role: Train)])"
+        );
+        return std::fs::write(to.join("dataset.ron"), dataset).map_err(failed);
+    }
+    for entry in std::fs::read_dir(from).map_err(failed)?.flatten() {
+        let name = entry.file_name();
+        // long records are left out: the dataset then names what is not there
+        if entry.metadata().is_ok_and(|found| found.len() < 30_000) {
+            std::fs::copy(entry.path(), to.join(name)).map_err(failed)?;
+        }
+    }
+    Ok(())
+}
+
+fn request(file: &Path, out: &Path, source: SourceKind) -> ImportRequest {
+    ImportRequest {
+        files: vec![file.to_path_buf()],
+        out: out.to_path_buf(),
+        source: Some(source),
+        kind: None,
+        columns: ColumnOptions::default(),
+        variable: (source == SourceKind::Mat).then(|| "bench.run(2)".to_owned()),
+        range: None,
+        sampling_hz: None,
+        reduce_to_hz: None,
+        most_samples: 1 << 12,
+        title: None,
+        deg_per_um: None,
+        split: false,
+    }
+}
