@@ -12,7 +12,7 @@
 //! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
 //! | actuators: identification from a bench, stored models, their use | [`identification`], [`stored_actuator`], [`actuator`], [`actuator_use`] |
 //! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
-//! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`]; as one of many in [`case_runner`] |
+//! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
 //! | two results side by side | [`compare`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
@@ -20,7 +20,6 @@
 pub mod actuator;
 pub mod actuator_use;
 pub mod case;
-pub mod case_runner;
 pub mod check;
 mod choices;
 pub mod cli;

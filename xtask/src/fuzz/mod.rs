@@ -26,6 +26,8 @@ const BATCH: usize = 50;
 pub struct Tally {
     /// The reader.
     pub reader: &'static str,
+    /// Whether it takes its valid inputs: else the changed ones would not reach far.
+    pub takes_valid: bool,
     /// Inputs that it was given.
     pub inputs: u64,
     /// Inputs that it took.
@@ -38,7 +40,7 @@ pub struct Tally {
 
 impl fmt::Display for Tally {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { reader, inputs, taken, slowest_s, panicked } = self;
+        let Self { reader, inputs, taken, slowest_s, panicked, .. } = self;
         write!(f, "{reader:<14} {inputs:>9} inputs, {taken:>8} taken, slowest {slowest_s:.3} s")?;
         if panicked.is_some() { f.write_str(", PANICKED") } else { Ok(()) }
     }
@@ -54,7 +56,11 @@ pub fn fuzz(root: &Path, budget: Duration, seed: u64) -> Result<Vec<Tally>, Xtas
         tempfile::tempdir().map_err(|source| XtaskError::Write { path: "fuzz".into(), source })?;
     let targets = targets::targets(root, place.path())?;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let tally = |target: &targets::Target| Tally { reader: target.reader, ..Tally::default() };
+    let tally = |target: &targets::Target| Tally {
+        reader: target.reader,
+        takes_valid: target.valid.iter().all(|input| (target.read)(input)),
+        ..Tally::default()
+    };
     let mut tallies: Vec<Tally> = targets.iter().map(tally).collect();
     let begun = Instant::now();
     while begun.elapsed() < budget {

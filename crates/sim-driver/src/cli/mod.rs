@@ -1,6 +1,7 @@
 //! The `hhc` command: arguments, dispatch, exit codes.
 
 mod args;
+mod case_runner;
 mod compare;
 mod data;
 mod diagnose;

@@ -1,9 +1,9 @@
 //! `hhc sweep`: many variations of a case, on one machine or as a Slurm array.
 
+use super::case_runner::CaseRunner;
 use super::write_texts;
 use crate::SimError;
 use crate::case::load_case;
-use crate::case_runner::CaseRunner;
 use crate::files::{Folder, Source, missing_file, refuse_unwritable};
 use crate::output::{Format, json, print, table};
 use crate::problem::Problem;

@@ -27,7 +27,7 @@ pub struct StoredResult {
     pub program: String,
     /// blake3 of version, canonical case and input data: equal keys mean equal results.
     pub key: String,
-    /// blake3 of each input beside the case: actuator or bench data.
+    /// blake3 of each input beside the case: actuator or bench data, measured files, aerofoil tables.
     pub inputs: Vec<String>,
     /// The whole case, defaults filled in.
     pub case: Case,

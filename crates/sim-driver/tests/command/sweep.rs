@@ -54,6 +54,13 @@ fn any_parts_merge_to_the_same_bytes() {
     ] {
         assert!(header.contains(&name), "{name} in {header:?}");
     }
+    place.hhc(&["sweep", "report", "sweep.ron", "--out", "a", "--at", "rotor.gj=0.007"]).done();
+    let page = place.read("a/sweep.html");
+    for part in ["3 cases with numbers, 5 others of the 8", "parcoords", "Failed cases"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let args = ["sweep", "report", "sweep.ron", "--out", "a", "--of", "j"];
+    place.hhc(&args).rejected(&["j is no axis (rotor.gj, "]);
     // a number of the table is that of the case on its own
     place.write("one.ron", &QUICK_CASE.replace(
         "inflow:",
@@ -115,7 +122,7 @@ fn keys_follow_the_files_that_a_case_names() {
     assert_eq!(key(), base);
     let table = include_str!("../../../../fixtures/airfoils/naca0012_synthetic.c81");
     place.write("foil.c81", table);
-    let foil = "aerodynamics: (airfoils: [(table: \"foil.c81\")], ";
+    let foil = "aerodynamics: (airfoils: [(station_r: 0.5, table: \"foil.c81\")], ";
     place.write("case.ron", &QUICK_CASE.replace("aerodynamics: (", foil));
     let with_table = key();
     assert_ne!(with_table, base);

@@ -3,7 +3,7 @@
 use crate::SimError;
 use crate::actuator::{BenchActuator, actuators_with, identified};
 use crate::case::{ActuatorSource, LoadedCase, read_case};
-use crate::files::{Folder, Source, airfoil_text, read_bench, ron_text};
+use crate::files::{Folder, Source, read_bench, ron_text};
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
 use crate::results::{ControlLine, Figures, flap_name, set_name};
@@ -17,7 +17,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Runs the cases of a sweep. Bench data are read and identified once for all cases.
 #[derive(Debug)]
-pub struct CaseRunner {
+pub(super) struct CaseRunner {
     folder: Folder,
     /// blake3 of bench data by folder.
     hashes: Mutex<BTreeMap<String, String>>,
@@ -31,7 +31,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 impl CaseRunner {
     /// A runner of cases whose paths are relative to `folder`.
-    pub fn new(folder: Folder) -> Self {
+    pub(super) fn new(folder: Folder) -> Self {
         Self { folder, hashes: Mutex::default(), actuators: Mutex::default() }
     }
 
@@ -39,7 +39,7 @@ impl CaseRunner {
     ///
     /// # Errors
     /// A value that RON cannot express.
-    pub fn canonical(loaded: &LoadedCase) -> Result<String, Problem> {
+    pub(super) fn canonical(loaded: &LoadedCase) -> Result<String, Problem> {
         ron_text(&loaded.case).map_err(|error| {
             let message = format!("cannot be written as a case: {error}");
             Problem::new(Place::file("case"), Fault::Refused { message })
@@ -50,9 +50,7 @@ impl CaseRunner {
     fn inputs(&self, loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
         let hash = |source: &Source| blake3::hash(source.text.as_bytes()).to_hex().to_string();
         let mut inputs = loaded.measured.inputs.clone();
-        for airfoil in &loaded.case.aerodynamics.airfoils {
-            inputs.push(hash(&airfoil_text(&self.folder, &airfoil.table)?));
-        }
+        inputs.extend(loaded.airfoil_hashes()?);
         match loaded.actuator_source() {
             ActuatorSource::Ideal => {}
             ActuatorSource::Stored { folder, file } => inputs.push(hash(&folder.read(&file)?)),
