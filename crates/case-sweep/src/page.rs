@@ -128,7 +128,7 @@ fn map(charts: &mut Charts, cases: &[&MergedCase], [x, y]: [&String; 2], name: &
         Some([Merged::number(case, x)?, Merged::number(case, y)?, Merged::number(case, name)?])
     };
     let places: Vec<Place3> = cases.iter().filter_map(place).collect();
-    charts.figure("chart", name, "", &map_chart([x, y], name, &places))
+    charts.figure("chart", name, "", &map_chart([x, y], &places))
 }
 
 fn parallel<'a>(

@@ -1,8 +1,6 @@
 //! Charts that many pages have, as plotly plots without colours of background and text: the page sets those.
 
-use plotly::common::{
-    Anchor, ColorBar, ColorScale, ColorScalePalette, DashType, Line, Marker, Mode,
-};
+use plotly::common::{Anchor, ColorScale, ColorScalePalette, DashType, Line, Marker, Mode};
 use plotly::common::{Orientation, Title};
 use plotly::layout::{Axis, BarMode, Legend, Margin};
 use plotly::{Bar, Contour, Layout, Plot, Scatter, Trace};
@@ -73,7 +71,7 @@ pub type Place3 = [f64; 3];
 
 /// Values over two axes: contours where they stand on a whole grid, each place once, else points in the colour of their
 /// value.
-pub fn map_chart([x_title, y_title]: [&str; 2], value_title: &str, places: &[Place3]) -> Plot {
+pub fn map_chart([x_title, y_title]: [&str; 2], places: &[Place3]) -> Plot {
     let column = |i: usize| -> Vec<f64> { places.iter().map(|place| place[i]).collect() };
     let steps = |mut values: Vec<f64>| {
         values.sort_by(f64::total_cmp);
@@ -90,13 +88,12 @@ pub fn map_chart([x_title, y_title]: [&str; 2], value_title: &str, places: &[Pla
     let is_grid = xs.len() > 1 && ys.len() > 1 && xs.len() * ys.len() == places.len();
     let mut plot = Plot::new();
     let scale = || ColorScale::Palette(ColorScalePalette::Viridis);
-    let bar = || ColorBar::new().title(value_title);
     if let Some(rows) = rows.filter(|_| is_grid) {
-        plot.add_trace(Contour::new(xs, ys, rows).color_scale(scale()).color_bar(bar()));
+        plot.add_trace(Contour::new(xs, ys, rows).color_scale(scale()));
     } else {
         let marker = Marker::new().size(9).color_array(column(2)).color_scale(scale());
         let points = Scatter::new(column(0), column(1)).mode(Mode::Markers);
-        plot.add_trace(points.marker(marker.color_bar(bar()).show_scale(true)));
+        plot.add_trace(points.marker(marker.show_scale(true)));
     }
     plot.set_layout(chart_layout().x_axis(chart_axis(x_title)).y_axis(chart_axis(y_title)));
     plot
@@ -164,7 +161,7 @@ mod tests {
     #[test]
     fn a_whole_grid_has_contours() {
         let grid = [[0.0, 0.0, 1.0], [1.0, 0.0, 2.0], [0.0, 5.0, 3.0], [1.0, 5.0, 4.0]];
-        let json = |places: &[Place3]| map_chart(["x", "y"], "z", places).to_json();
+        let json = |places: &[Place3]| map_chart(["x", "y"], places).to_json();
         assert!(json(&grid).contains("\"z\":[[1.0,2.0],[3.0,4.0]]"), "{}", json(&grid));
         assert!(!json(&grid[..3]).contains("contour"));
         assert!(!json(&[grid[0], grid[1], grid[2], grid[2]]).contains("contour"));
