@@ -158,7 +158,7 @@ fn copy(from: &Path, to: &Path, own: &str) -> Result<(), XtaskError> {
     std::fs::create_dir_all(to).map_err(failed)?;
     if own == RECORD {
         let dataset = format!(
-            "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"{own}\", role: Train)])"
+            "(kind: ActuatorBench, title: \"t\", runs: [(id: \"a\", file: \"{own}\", role: Reference)])"
         );
         return std::fs::write(to.join("dataset.ron"), dataset).map_err(failed);
     }
