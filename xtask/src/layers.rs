@@ -38,8 +38,9 @@ pub const RESERVED_CRATES: [&str; 10] = [
 ];
 
 /// The members that may use [`RESERVED_CRATES`] in what they ship; tests may use them anywhere.
-pub const RESERVED_FOR: [&str; 11] = [
+pub const RESERVED_FOR: [&str; 12] = [
     "measured-data",
+    "case-sweep",
     "report-page",
     "diagnosis-page",
     "sim-driver",

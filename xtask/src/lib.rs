@@ -14,6 +14,7 @@
 //! | `hidden-effects --kind rotor`, `blade`, `section` | the same on points of an independent rotor, blade or section | [`point_sets`] |
 //! | `case-studies` | diagnoses measured points, writes figures and numbers of the pages on them | [`case_studies`] |
 //! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
+//! | `fuzz` | gives every reader mutated bytes: an error or a value, never a panic | [`fuzz`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
 //! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
@@ -34,6 +35,7 @@ pub mod dynamic_stall;
 mod error;
 pub mod everyday_errors;
 pub mod files;
+pub mod fuzz;
 pub mod hidden_effects;
 pub mod hover_refinement;
 pub mod layers;

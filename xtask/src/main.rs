@@ -3,6 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{Parser, Subcommand};
 use everyday_bench::family::Family;
@@ -12,8 +13,8 @@ use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, case_studies, ci, dependencies, dynamic_stall, everyday_errors,
-    files, hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms, tidy,
-    validate, wake_control, wake_inflow, wake_refinement, workspace,
+    files, fuzz, hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms,
+    tidy, validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -97,6 +98,15 @@ enum Chore {
     DynamicStall(Stall),
     /// Diagnose the measured points of the case studies, and write their figures and numbers
     CaseStudies(Studies),
+    /// Give every reader of files mutated bytes; a panic is exit code 3, its input is stored
+    Fuzz {
+        /// For how long, s
+        #[arg(long, default_value_t = 60)]
+        seconds: u64,
+        /// Seed of the changes
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
     /// Run .ci/run: everything a change must pass
     Ci,
 }
@@ -235,6 +245,24 @@ fn main() -> ExitCode {
     }
 }
 
+/// Shows what became of the inputs, and stores the one at which a reader panicked.
+fn fuzz_readers(seconds: u64, seed: u64) -> Result<ExitCode, XtaskError> {
+    let tallies = fuzz::fuzz(&workspace::root(), Duration::from_secs(seconds), seed)?;
+    for tally in &tallies {
+        say(&mut std::io::stdout(), &format!("{tally}\n"));
+        if let Some(input) = &tally.panicked {
+            let name = tally.reader.replace(' ', "_");
+            let path = workspace::root().join("target/fuzz").join(name);
+            sim_driver::files::write_atomic(&path, input).map_err(sim_driver::SimError::from)?;
+            say(&mut std::io::stdout(), &format!("  its input is in {}\n", path.display()));
+        }
+    }
+    let inputs: u64 = tallies.iter().map(|tally| tally.inputs).sum();
+    say(&mut std::io::stdout(), &format!("{inputs} inputs\n"));
+    let panicked = tallies.iter().any(|tally| tally.panicked.is_some());
+    Ok(if panicked { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
 /// What the choices of the free wake do.
 fn wake_tables() -> Result<ExitCode, XtaskError> {
     let line = |line: &str| say(&mut std::io::stdout(), line);
@@ -311,6 +339,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &format!("written: {}\n", calibrate::TABLE));
             Ok(ExitCode::SUCCESS)
         }
+        Chore::Fuzz { seconds, seed } => fuzz_readers(seconds, seed),
         Chore::Refinement => {
             say(&mut std::io::stdout(), &refinement::table()?);
             Ok(ExitCode::SUCCESS)

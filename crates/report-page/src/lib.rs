@@ -17,7 +17,8 @@ mod section;
 mod text;
 
 pub use charts::{
-    COLOURS, DrawnCurve, chart_axis, chart_layout, chart_line, curve_chart, pair_chart,
+    COLOURS, DrawnCurve, Place3, chart_axis, chart_layout, chart_line, curve_chart, map_chart,
+    pair_chart, parallel_chart, trade_chart,
 };
 pub use page::{Charts, folded, page, paragraphs};
 pub use section::Section;

@@ -2,7 +2,7 @@
 
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
-use crate::files::{BenchData, RonIndex, Source, read_bench};
+use crate::files::{BenchData, Folder, RonIndex, Source, read_bench};
 use crate::problem::{Fault, Place, Problem};
 use bench_study::BenchError;
 use bench_study::identification::{BenchIdentification, dataset_place, identify_bench};
@@ -46,12 +46,41 @@ impl CaseActuators {
     }
 }
 
+/// Bench data with the actuator identified from them.
+pub(crate) type BenchActuator = (BenchData, BenchIdentification);
+
+/// Reads bench data and identifies their actuator.
+///
+/// # Errors
+/// Every problem of the data; [`BenchError::Actuator`] for an identification that fails.
+pub(crate) fn identified(folder: &Folder) -> Result<BenchActuator, SimError> {
+    let data = read_bench(folder)?;
+    let found = identify_bench(&data, &Settings::default(), None)?;
+    Ok((data, found))
+}
+
 /// Gets the actuators of a case: identifies, reads or makes them.
 ///
 /// # Errors
 /// Every problem of the bench data or the actuator file; [`BenchError::Actuator`](bench_study::BenchError::Actuator) for an
 /// identification that fails.
 pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
+    let bench = match &loaded.actuator_source() {
+        ActuatorSource::Bench(folder) => Some(identified(folder)?),
+        _ => None,
+    };
+    let actuators = actuators_with(loaded, bench.as_ref())?;
+    Ok(CaseActuators { bench, ..actuators })
+}
+
+/// The same with the bench of the case identified before; it is not kept beside the models.
+///
+/// # Errors
+/// As [`case_actuators`].
+pub(crate) fn actuators_with(
+    loaded: &LoadedCase,
+    bench: Option<&BenchActuator>,
+) -> Result<CaseActuators, SimError> {
     let case = &loaded.case;
     let values = &case.actuator;
     let (low, high) = values.range_volt;
@@ -64,17 +93,14 @@ pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     let mut actuators = CaseActuators::new(ideal);
     let stored = match &loaded.actuator_source() {
         ActuatorSource::Ideal => None,
-        ActuatorSource::Bench(folder) => {
-            let data = read_bench(folder)?;
+        ActuatorSource::Bench(_) => bench.map(|(data, found)| {
             actuators.warnings.extend(data.warnings.iter().map(Problem::to_string));
-            let found = identify_bench(&data, &Settings::default(), None)?;
             let stored = found.stored();
             let place = |_: &str| dataset_place(&data.folder);
             actuators.warnings.extend(actuator_warnings(&stored, place));
             actuators.inputs.push(data.content_hash.clone());
-            actuators.bench = Some((data, found));
-            Some(stored)
-        }
+            stored
+        }),
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
             let stored = read_actuator(&source)?;

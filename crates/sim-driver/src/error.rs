@@ -3,6 +3,7 @@
 use crate::problem::{Fault, Place, Problem, Problems};
 use actuator_gap::DiagnosisError;
 use bench_study::BenchError;
+use case_sweep::SweepError;
 use flap_aero::AeroError;
 use measured_data::DataError;
 use preisach_dyn::PreisachError;
@@ -23,6 +24,10 @@ pub enum SimError {
     /// Files with problems, every one of them; a file that cannot be written.
     #[error(transparent)]
     Data(#[from] DataError),
+
+    /// Results of a sweep that are missing, damaged or foreign; a part of its cases that is none.
+    #[error(transparent)]
+    Sweep(SweepError),
 
     // ---- models; the family depends on the source ----
     /// The bench: an actuator model, its identification or its diagnosis.
@@ -135,10 +140,12 @@ impl SimError {
     fn family(&self) -> Family {
         match self {
             Self::WakeDiverged { .. } => Family::NumericalFailure,
-            Self::NotReproduced { .. } => Family::DataMismatch,
+            Self::NotReproduced { .. } | Self::Sweep(SweepError::Incomplete(_)) => {
+                Family::DataMismatch
+            }
             Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
             Self::Bench(source) => bench_family(source),
-            Self::Data(_) | Self::Section(_) => Family::RejectedInput,
+            Self::Data(_) | Self::Sweep(_) | Self::Section(_) => Family::RejectedInput,
             Self::Study { source, .. } => study_family(source),
         }
     }
@@ -220,6 +227,15 @@ impl From<BenchError> for SimError {
         match error {
             BenchError::Data(source) => Self::Data(source),
             other => Self::Bench(other),
+        }
+    }
+}
+
+impl From<SweepError> for SimError {
+    fn from(error: SweepError) -> Self {
+        match error {
+            SweepError::Data(error) => Self::Data(error),
+            error => Self::Sweep(error),
         }
     }
 }

@@ -35,6 +35,14 @@ pub fn continued_trim(
     })
 }
 
+/// Ends in failure what is no solution, after what was found is stored and shown.
+pub(crate) fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
+    if diverged {
+        return Err(SimError::WakeDiverged { place: loaded.index.place("inflow.model") });
+    }
+    Ok(())
+}
+
 /// What is found at one advance ratio.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SweepRow {

@@ -22,7 +22,7 @@ const FORBIDDEN: [(&str, &str); 5] = [
 const OUTSIDE_WORLD: [&str; 5] = ["std::fs", "std::env", "std::net", "std::process", "std::time"];
 
 /// The crates of the product that know files.
-const KNOW_FILES: [&str; 2] = ["measured-data", "sim-driver"];
+const KNOW_FILES: [&str; 3] = ["measured-data", "case-sweep", "sim-driver"];
 
 /// Folders that exist on one machine only.
 const MACHINE_FOLDERS: [&str; 4] =

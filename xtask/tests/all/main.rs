@@ -3,6 +3,7 @@
 mod case_studies;
 mod command;
 mod dependencies;
+mod fuzz;
 mod goldens;
 mod rooms;
 mod rules;

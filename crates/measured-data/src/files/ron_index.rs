@@ -70,6 +70,29 @@ impl RonIndex {
         self.entry(path).is_some()
     }
 
+    /// The text with another value of a field. A field that the text leaves out is written into the nearest group
+    /// around it; whether it belongs there, the reader of the text says. None where there is no such group.
+    pub fn with_value(&self, path: &str, value: &str) -> Option<String> {
+        if let Some(entry) = self.entry(path) {
+            let (before, after) = (&self.text[..entry.value.start], &self.text[entry.value.end..]);
+            return Some(format!("{before}{value}{after}"));
+        }
+        let (group, name) = path.rsplit_once('.').unwrap_or(("", path));
+        // an element cannot be added in the middle of a list
+        if name.is_empty() || name.contains(['[', ']']) {
+            return None;
+        }
+        let inside = if group.is_empty() {
+            self.entries.iter().map(|entry| entry.start).min()?
+        } else if let Some(entry) = self.entry(group) {
+            entry.value.start + self.text(&entry.value).find('(')? + 1
+        } else {
+            return self.with_value(group, &format!("({name}: {value})"));
+        };
+        let (before, after) = (self.text.get(..inside)?, self.text.get(inside..)?);
+        Some(format!("{before}{name}: {value}, {after}"))
+    }
+
     /// Gives a field, and all inside it, another path.
     pub fn rename(&mut self, before: &str, now: &str) {
         for entry in &mut self.entries {
@@ -291,6 +314,20 @@ mod tests {
     use super::*;
 
     const TEXT: &str = "#![enable(implicit_some)]\n// a comment with rotor: (radius_m: 1)\n(\n    title: \"a (tricky: \\\" one\",\n    rotor: ( // here\n        radius_m: -4.94, /* and: /* nested */ */ blades: 4,\n    ),\n    flaps: [(start_r: 0.7), (start_r: 0.8, end_r: 0.85)],\n    trim: Propulsive(ct_sigma: 0.07), raw: r#\"x: \"y\"\"#,\n    range_V: (-20, 150), map: {\"µ\": 1, 2: 3},\n)\n";
+
+    #[test]
+    fn a_value_is_replaced_or_added_where_its_group_is() {
+        let text = "#![enable(implicit_some)]\n(a: 1, b: Kind(c: [2, 3]), d: \"x\", e: ())";
+        let set = |path: &str, value: &str| RonIndex::new("f", text).with_value(path, value);
+        assert_eq!(set("a", "(7)").unwrap(), text.replace("a: 1", "a: (7)"));
+        assert_eq!(set("b.c[1]", "4").unwrap(), text.replace('3', "4"));
+        assert_eq!(set("b.n", "4").unwrap(), text.replace("Kind(", "Kind(n: 4, "));
+        assert_eq!(set("e.n.m", "4").unwrap(), text.replace("e: (", "e: (n: (m: 4), "));
+        assert_eq!(set("n", "4").unwrap(), text.replace("(a", "(n: 4, a"));
+        for path in ["b.c[2]", "a.n", "", "b."] {
+            assert_eq!(set(path, "4"), None, "{path}");
+        }
+    }
 
     #[test]
     fn every_field_has_its_line_and_column() {

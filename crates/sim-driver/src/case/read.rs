@@ -4,7 +4,9 @@ use super::airfoils::read_airfoils;
 use super::measured::{MeasuredRotor, read_measured};
 use super::{ActuatorChoice, ActuatorPath, Case, CaseFaults, ControlActuator, PlausibilityWarning};
 use crate::SimError;
-use crate::files::{Folder, RonIndex, SHIPPED_BENCH, SHIPPED_CASES, Source, read_ron, shipped};
+use crate::files::{
+    Folder, RonIndex, SHIPPED_BENCH, SHIPPED_CASES, Source, airfoil_text, read_ron, shipped,
+};
 use crate::problem::{Fault, Problem, Problems};
 use bench_study::stored::read_actuator;
 use rotor_study::StudyError;
@@ -65,6 +67,17 @@ impl LoadedCase {
                 ActuatorSource::Stored { folder: self.folder.clone(), file: stored.path.clone() }
             }
         }
+    }
+
+    /// blake3 of every aerofoil table that the case names, for the key of a result.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more.
+    pub fn airfoil_hashes(&self) -> Result<Vec<String>, Problem> {
+        let named = self.case.aerodynamics.airfoils.iter();
+        let text = |table: &str| Ok(airfoil_text(&self.folder, table)?.text);
+        let hash = |text: String| blake3::hash(text.as_bytes()).to_hex().to_string();
+        named.map(|airfoil| text(&airfoil.table).map(hash)).collect()
     }
 
     /// An error of a model or a study at the line of its field.

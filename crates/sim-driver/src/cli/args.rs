@@ -1,5 +1,6 @@
 //! The arguments of `hhc`.
 
+use super::sweep::SweepAction;
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
 use crate::choices::model_parser;
@@ -58,6 +59,9 @@ pub enum Command {
     RootPitch(RootPitchArgs),
     /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
+    /// Many variations of a case: axes over any field, resumable, in parts, on a cluster.
+    #[command(subcommand)]
+    Sweep(SweepAction),
     /// Check a case, a data folder or an actuator file; reports every problem with its line.
     Check {
         /// Case, dataset.ron (or its folder) or actuator file.

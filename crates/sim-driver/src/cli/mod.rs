@@ -1,6 +1,7 @@
 //! The `hhc` command: arguments, dispatch, exit codes.
 
 mod args;
+mod case_runner;
 mod compare;
 mod data;
 mod diagnose;
@@ -8,6 +9,7 @@ mod identify;
 mod rotor;
 mod run;
 mod section;
+mod sweep;
 
 pub use args::{
     Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride,
@@ -72,6 +74,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Modes(args)) => rotor::modes(args),
         Some(Command::Wake(args)) => rotor::wake(args),
         Some(Command::RootPitch(args)) => rotor::root_pitch(args),
+        Some(Command::Sweep(action)) => sweep::sweep(action),
         Some(Command::Section(args)) => section::section(args),
         Some(Command::Check { file, format }) => data::check(file, *format),
         Some(Command::Init { file }) => data::init(file),
@@ -116,14 +119,6 @@ fn write_texts<N: AsRef<Path>>(
 ) -> Result<(), SimError> {
     for (name, text) in files {
         write_atomic(&folder.join(name), text.as_bytes())?;
-    }
-    Ok(())
-}
-
-/// Ends a command in failure, after what it found is stored and shown, if that is no solution.
-fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
-    if diverged {
-        return Err(SimError::WakeDiverged { place: loaded.index.place("inflow.model") });
     }
     Ok(())
 }

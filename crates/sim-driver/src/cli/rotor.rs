@@ -2,8 +2,7 @@
 
 use super::args::{ModesArgs, RootPitchArgs, WakeArgs};
 use super::{
-    case_or_paper, check_advance_ratio, check_range, overridden, refuse_diverged, refuse_inputs,
-    warn, write_texts,
+    case_or_paper, check_advance_ratio, check_range, overridden, refuse_inputs, warn, write_texts,
 };
 use crate::SimError;
 use crate::files::{refuse_unwritable, write_atomic};
@@ -14,6 +13,7 @@ use crate::print::wake::wake_files;
 use crate::problem::Problems;
 use crate::progress::Progress;
 use crate::sweep::at_advance_ratio;
+use crate::sweep::refuse_diverged;
 use rotor_fem::GyroscopicTerms;
 use rotor_study::{AboutState, FAN_SPEEDS, ModesQuestion};
 

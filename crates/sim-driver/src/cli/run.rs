@@ -1,7 +1,7 @@
 //! Bare `hhc`, `hhc run` and `hhc report`: a case run, stored and shown.
 
 use super::args::{RunArgs, StudyArgs};
-use super::{check_advance_ratio, overridden, refuse_diverged, warn};
+use super::{check_advance_ratio, overridden, warn};
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -17,7 +17,9 @@ use crate::report::{
 };
 use crate::results::{Figures, RESULT_FILE, StoredResult, figures};
 use crate::run::{RunOutcome, run_case, run_trimmed, steps_of, stored_of};
-use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, sweep_csv};
+use crate::sweep::{
+    SweepResult, SweepRow, at_advance_ratio, continued_trim, refuse_diverged, sweep_csv,
+};
 use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::{Path, PathBuf};

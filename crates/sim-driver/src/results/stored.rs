@@ -7,6 +7,7 @@ use crate::case::Case;
 use crate::files::{Source, ron_text, write_atomic};
 use crate::output::json;
 use crate::problem::{Fault, Place, Problem};
+use case_sweep::case_key;
 use rotor_base::RotorScales;
 use rotor_study::Setting;
 use serde::de::DeserializeOwned;
@@ -26,7 +27,7 @@ pub struct StoredResult {
     pub program: String,
     /// blake3 of version, canonical case and input data: equal keys mean equal results.
     pub key: String,
-    /// blake3 of each input beside the case: actuator or bench data.
+    /// blake3 of each input beside the case: actuator or bench data, measured files, aerofoil tables.
     pub inputs: Vec<String>,
     /// The whole case, defaults filled in.
     pub case: Case,
@@ -176,13 +177,7 @@ fn check_hash(source: &Source) -> Result<(), SimError> {
 /// [`SimError::Data`] for a case RON cannot express.
 fn result_key(case: &Case, inputs: &[String]) -> Result<String, SimError> {
     let canonical = ron_text(case).map_err(|e| SimError::not_written("case", &e))?;
-    let mut hash = blake3::Hasher::new();
-    let inputs = inputs.iter().map(String::as_str);
-    for part in [crate::VERSION, &canonical].into_iter().chain(inputs) {
-        hash.update(&(part.len() as u64).to_le_bytes());
-        hash.update(part.as_bytes());
-    }
-    Ok(hash.finalize().to_hex().to_string())
+    Ok(case_key(crate::VERSION, &canonical, inputs))
 }
 
 #[cfg(test)]

@@ -17,4 +17,5 @@ mod points;
 mod rotor;
 mod screen;
 mod stages_doc;
+mod sweep;
 mod wake;

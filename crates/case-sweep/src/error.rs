@@ -1,0 +1,34 @@
+//! The errors of this crate.
+
+use measured_data::DataError;
+use measured_data::problem::{Problem, Problems};
+
+/// What planning, running and merging a sweep can end with.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SweepError {
+    /// The sweep file has problems, or a result cannot be written.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// Results are missing, damaged, or of no case of the sweep.
+    #[error("{}", .0.join("\n"))]
+    Incomplete(Vec<String>),
+    /// The part of the cases that is asked for is none.
+    #[error("{0}")]
+    Shard(String),
+    /// What a page shall show is not there.
+    #[error("{0}")]
+    Choice(String),
+}
+
+impl From<Problems> for SweepError {
+    fn from(problems: Problems) -> Self {
+        Self::Data(problems.into())
+    }
+}
+
+impl From<Problem> for SweepError {
+    fn from(problem: Problem) -> Self {
+        Self::Data(problem.into())
+    }
+}

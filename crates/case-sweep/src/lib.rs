@@ -1,0 +1,90 @@
+//! Sweeps: variations of a RON text over axes, run anywhere, stored by content, merged into one table.
+//!
+//! What a case means is the matter of a [`Runner`]: it reads a text, and makes numbers of it.
+//!
+//! | idea | module |
+//! |---|---|
+//! | the sweep file: axes and sampling | `file` |
+//! | values of the axes of every case | `sample` |
+//! | the cases of a sweep with their keys | `plan` |
+//! | results on disk, each with its own hash | `store` |
+//! | what is there, missing, damaged, foreign | `status` |
+//! | running what is missing, on all threads | `run` |
+//! | one table of all results | `merge` |
+//! | its page: maps over two axes, parallel coordinates, reduction against power | `page` |
+//! | the script of an array of Slurm, the part of a task | `shard` |
+//!
+//! No result depends on thread, order or shard: a case is read from its own text and starts from no other.
+
+mod error;
+mod file;
+mod merge;
+mod page;
+mod plan;
+mod run;
+mod sample;
+mod shard;
+mod status;
+mod store;
+#[cfg(test)]
+mod tests;
+
+pub use error::SweepError;
+pub use file::{Axis, AxisValues, Sampling, SweepFile, read_sweep_file};
+pub use merge::{Merged, MergedCase, merge};
+pub use page::PageChoice;
+pub use plan::{Plan, PlannedCase, plan};
+pub use run::{Done, Pace, Ran, run};
+pub use shard::{Shard, array_script};
+pub use status::{Status, status};
+pub use store::{Cell, Outcome, State, Store, StoredCase, case_key};
+
+use measured_data::problem::Problems;
+
+/// A case as a runner has read it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ReadCase<C> {
+    /// The case printed anew with all its defaults: comments, order and layout of the text are gone.
+    pub canonical: String,
+    /// blake3 of every file that the case names, in a fixed order.
+    pub inputs: Vec<String>,
+    /// What the runner needs to run it.
+    pub case: C,
+}
+
+/// What is found of a case.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Found {
+    /// Name with unit, and value; the same names in the same order for cases of the same kind.
+    pub columns: Vec<(String, Cell)>,
+    /// What a reader should know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+/// What makes numbers of a case text.
+///
+/// Both functions are functions of their arguments alone: equal texts and files give equal bits.
+pub trait Runner: Sync {
+    /// A case that was read.
+    type Case;
+
+    /// Version of the model, part of every key: other versions give other numbers.
+    fn version(&self) -> &str;
+
+    /// Reads a case.
+    ///
+    /// # Errors
+    /// Every problem of the text, each with its field.
+    fn read(&self, text: &str) -> Result<ReadCase<Self::Case>, Problems>;
+
+    /// Runs a case.
+    ///
+    /// # Errors
+    /// In words, why there is no result.
+    fn run(&self, case: Self::Case) -> Result<Found, String>;
+}
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

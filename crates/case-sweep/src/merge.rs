@@ -1,0 +1,159 @@
+//! One table of all results.
+
+use crate::status::{Status, status};
+use crate::store::{Cell, Outcome, Store};
+use crate::{Plan, SweepError};
+use serde::{Serialize, Serializer};
+use std::fmt::Write as _;
+
+/// Keys and files that a message names; of more it says how many.
+const NAMED: usize = 5;
+
+/// All results of a sweep, in the order of its cases.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Merged {
+    /// Fields of the axes.
+    pub axes: Vec<String>,
+    /// Names of the columns, with units.
+    pub columns: Vec<String>,
+    /// One for each case that has a result.
+    pub cases: Vec<MergedCase>,
+}
+
+/// A case with its result.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MergedCase {
+    /// Its number, from 1.
+    pub case: usize,
+    /// Its key.
+    pub key: String,
+    /// Its value on each axis: a number, or RON.
+    #[serde(serialize_with = "members")]
+    pub values: Vec<(String, Cell)>,
+    /// Why there are no numbers.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failed: Option<String>,
+    /// What was found.
+    #[serde(serialize_with = "members")]
+    pub found: Vec<(String, Cell)>,
+    /// What a reader should know before using it.
+    pub warnings: Vec<String>,
+}
+
+fn members<S: Serializer>(pairs: &[(String, Cell)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(pairs.iter().map(|(name, cell)| (name, cell)))
+}
+
+/// Merges the results of a plan.
+///
+/// # Errors
+/// [`SweepError::Incomplete`] with the results that are missing, damaged or of no case, unless `partial` leaves them out.
+pub fn merge(plan: &Plan, store: &Store, partial: bool) -> Result<Merged, SweepError> {
+    if !partial {
+        let faults = faults(&status(store, plan));
+        if !faults.is_empty() {
+            return Err(SweepError::Incomplete(faults));
+        }
+    }
+    let mut merged = Merged { axes: plan.fields.clone(), columns: vec![], cases: vec![] };
+    for (i, planned) in plan.cases.iter().enumerate() {
+        let Some(stored) = store.get(&planned.key).1 else { continue };
+        let (found, warnings, failed) = match stored.outcome {
+            Outcome::Found { columns, warnings } => (columns, warnings, None),
+            Outcome::Failed { reason } => (vec![], vec![], Some(reason)),
+        };
+        for (name, _) in &found {
+            if !merged.columns.contains(name) {
+                merged.columns.push(name.clone());
+            }
+        }
+        let values = plan.fields.iter().zip(&planned.values);
+        let values = values.map(|(field, value)| (field.clone(), cell_of(value))).collect();
+        let key = planned.key.clone();
+        merged.cases.push(MergedCase { case: i + 1, key, values, failed, found, warnings });
+    }
+    Ok(merged)
+}
+
+/// What keeps a sweep from being merged, in words.
+fn faults(status: &Status) -> Vec<String> {
+    let named = |list: &[String], what: &str, remedy: &str| {
+        let more = list.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+        let first: Vec<&str> = list.iter().take(NAMED).map(String::as_str).collect();
+        let said = format!("{what}: {}; {remedy}\n  {}{more}", list.len(), first.join("\n  "));
+        (!list.is_empty()).then_some(said)
+    };
+    let again = "run the sweep again, which computes these alone, or leave them out with --partial";
+    [
+        named(&status.missing, "cases without a result", again),
+        named(&status.damaged, "results that are cut off or altered", again),
+        named(
+            &status.foreign,
+            "files that are results of no case of this sweep",
+            "they are of another sweep or version: remove them, or leave them out with --partial",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// A number where the text is one, else the text.
+fn cell_of(value: &str) -> Cell {
+    value.parse().map_or_else(|_| Cell::Text(value.to_owned()), Cell::Number)
+}
+
+impl Merged {
+    /// The value of a case in a column or on an axis.
+    pub fn number(case: &MergedCase, name: &str) -> Option<f64> {
+        let (_, cell) = case.values.iter().chain(&case.found).find(|(own, _)| own == name)?;
+        if let Cell::Number(value) = cell { Some(*value) } else { None }
+    }
+
+    /// The table: number, axes, `failed`, columns, `warnings` (how many) and key; an empty cell has no value.
+    pub fn csv(&self) -> String {
+        let names = self.axes.iter().map(|field| quoted(field));
+        let columns = self.columns.iter().map(|name| quoted(name));
+        let header: Vec<String> = names.chain(["failed".to_owned()]).chain(columns).collect();
+        let mut text = format!("case,{},warnings,key\n", header.join(","));
+        for case in &self.cases {
+            let mut row: Vec<String> = case.values.iter().map(|(_, cell)| shown(cell)).collect();
+            row.push(quoted(case.failed.as_deref().unwrap_or_default()));
+            let found = |name: &String| case.found.iter().find(|(own, _)| own == name);
+            row.extend(
+                self.columns
+                    .iter()
+                    .map(|name| found(name).map_or_else(String::new, |(_, cell)| shown(cell))),
+            );
+            // writing to a string cannot fail
+            let _ = writeln!(
+                text,
+                "{},{},{},{}",
+                case.case,
+                row.join(","),
+                case.warnings.len(),
+                case.key
+            );
+        }
+        text
+    }
+}
+
+fn shown(cell: &Cell) -> String {
+    match cell {
+        // the shortest text that reads back to the same bits
+        Cell::Number(value) if *value != 0.0 && !(1e-4..1e9).contains(&value.abs()) => {
+            format!("{value:e}")
+        }
+        Cell::Number(value) => format!("{value}"),
+        Cell::Text(text) => quoted(text),
+        Cell::Nothing(()) => String::new(),
+    }
+}
+
+/// A text as a cell of a CSV, on one line.
+fn quoted(text: &str) -> String {
+    let line = text.replace(['\n', '\r'], " ");
+    if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
+}

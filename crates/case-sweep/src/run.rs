@@ -1,0 +1,169 @@
+//! Running what is missing, on all threads.
+
+use crate::store::{Outcome, State, Store, StoredCase};
+use crate::{Plan, PlannedCase, ReadCase, Runner, Shard, SweepError};
+use serde::Serialize;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What a run did.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize)]
+pub struct Ran {
+    /// Cases of the part.
+    pub cases: usize,
+    /// Cases whose results were there.
+    pub skipped: usize,
+    /// Cases computed, failed ones included.
+    pub computed: usize,
+    /// Failed cases, computed or there: key and reason.
+    pub failed: Vec<(String, String)>,
+    /// Keys of results that were cut off or altered, and were computed again.
+    pub damaged: Vec<String>,
+}
+
+/// How far a run is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Done {
+    /// Cases computed.
+    pub computed: usize,
+    /// Cases to compute.
+    pub of: usize,
+}
+
+/// How fast a run is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pace {
+    /// How far it is.
+    pub done: Done,
+    /// Time since it began, s.
+    pub elapsed_s: f64,
+}
+
+impl std::fmt::Display for Pace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Done { computed, of } = self.done;
+        let per_s = computed as f64 / self.elapsed_s.max(1e-3);
+        let left_s = (of - computed.min(of)) as f64 / per_s.max(1e-9);
+        let left = match left_s {
+            s if s < 90.0 => format!("{s:.0} s"),
+            s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+            s => format!("{:.1} h", s / 3600.0),
+        };
+        write!(f, "{computed} of {of} cases, {:.3} per minute, about {left} left", 60.0 * per_s)
+    }
+}
+
+/// Runs the cases of a part that have no whole result yet. `done` is told of every case, from one thread at a time.
+///
+/// A case runs on one thread; fewer cases than threads share the threads out. No result depends on it.
+///
+/// # Errors
+/// A result that cannot be written. Failed cases are results.
+pub fn run<R: Runner>(
+    plan: &Plan,
+    shard: Shard,
+    store: &Store,
+    runner: &R,
+    done: &(dyn Fn(Done) + Sync),
+) -> Result<Ran, SweepError> {
+    let part = shard.part(plan.distinct());
+    let mut ran = Ran { cases: part.len(), ..Ran::default() };
+    let mut open: Vec<&PlannedCase> = Vec::new();
+    for case in part {
+        match store.get(&case.key) {
+            (State::Found, _) => ran.skipped += 1,
+            (State::Failed, stored) => {
+                ran.skipped += 1;
+                ran.failed.extend(stored.and_then(|stored| reason(&case.key, &stored.outcome)));
+            }
+            (state, _) => {
+                ran.damaged.extend((state == State::Damaged).then(|| case.key.clone()));
+                open.push(case);
+            }
+        }
+    }
+    let threads = rayon::current_num_threads();
+    let workers = threads.min(open.len()).max(1);
+    let (next, computed) = (AtomicUsize::new(0), Mutex::new(0_usize));
+    let failed = Mutex::new(Vec::new());
+    let work = || -> Result<(), SweepError> {
+        // threads of its own: a case that waits for its parts takes up no other case meanwhile
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads / workers).build();
+        loop {
+            let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
+            let one = || run_case(plan, case, runner);
+            let stored = match &pool {
+                Ok(pool) => pool.install(one),
+                Err(_) => one(),
+            };
+            if let Err(error) = store.put(&stored) {
+                // the others end after their case
+                next.store(open.len(), Ordering::Relaxed);
+                return Err(error);
+            }
+            lock(&failed).extend(reason(&case.key, &stored.outcome));
+            let mut computed = lock(&computed);
+            *computed += 1;
+            done(Done { computed: *computed, of: open.len() });
+        }
+    };
+    let ends: Vec<Result<(), SweepError>> = std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        workers.into_iter().filter_map(|worker| worker.join().ok()).collect()
+    });
+    ends.into_iter().collect::<Result<(), SweepError>>()?;
+    ran.computed = *lock(&computed);
+    ran.failed.append(&mut lock(&failed));
+    ran.failed.sort();
+    Ok(ran)
+}
+
+/// A panic of another thread spoils no count.
+fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+fn reason(key: &str, outcome: &Outcome) -> Option<(String, String)> {
+    match outcome {
+        Outcome::Failed { reason } => Some((key.to_owned(), reason.clone())),
+        Outcome::Found { .. } => None,
+    }
+}
+
+fn run_case<R: Runner>(plan: &Plan, planned: &PlannedCase, runner: &R) -> StoredCase {
+    let version = runner.version().to_owned();
+    let text = plan.text(&planned.values, runner).unwrap_or_default();
+    let read = match &planned.refused {
+        Some(refused) => Err(refused.clone()),
+        None => runner.read(&text).map_err(|problems| problems.to_string()),
+    };
+    match read {
+        Ok(ReadCase { canonical, inputs, case }) => {
+            let found = catch_unwind(AssertUnwindSafe(|| runner.run(case)));
+            let found = found.unwrap_or_else(|_| {
+                Err("a bug of the program stopped the case; please report it".to_owned())
+            });
+            StoredCase { version, inputs, case: canonical, outcome: found.into() }
+        }
+        Err(reason) => {
+            StoredCase { version, inputs: vec![], case: text, outcome: Outcome::Failed { reason } }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_pace_says_rate_and_time_left() {
+        let pace = |computed, elapsed_s| Pace { done: Done { computed, of: 1000 }, elapsed_s };
+        assert_eq!(
+            pace(100, 60.0).to_string(),
+            "100 of 1000 cases, 100.000 per minute, about 9 min left"
+        );
+        assert!(pace(1000, 60.0).to_string().ends_with("about 0 s left"));
+        assert!(pace(1, 60.0).to_string().ends_with("about 16.6 h left"));
+    }
+}
