@@ -217,20 +217,10 @@ impl Finding {
                 ),
                 "check the sign of the output: of an inverted sensor import it with --scale NAME=-1",
             ),
-            Self::Clipped { id, channel: Channel::Output, level, share_percent } => (
-                Severity::Suspect,
-                format!(
-                    "record {id}: the output rests at {level:.4} {output} for {share_percent:.1} % of the samples while the command moves: it is clipped"
-                ),
-                "widen the sensor's range and record again",
-            ),
-            Self::Clipped { id, channel: Channel::Command, level, share_percent } => (
-                Severity::Suspect,
-                format!(
-                    "record {id}: the periodic command rests at {level:.2} {input} for {share_percent:.1} % of the samples: it is clipped"
-                ),
-                "record the voltage at the actuator's terminals, or keep the amplifier off its limit",
-            ),
+            Self::Clipped { id, channel, level, share_percent } => {
+                let (sentence, remedy) = clipped(*channel, [input, output], *level, *share_percent);
+                (Severity::Suspect, format!("record {id}: the {sentence}: it is clipped"), remedy)
+            }
             Self::SwitchedOn { id } => (
                 Severity::Remark,
                 format!(
@@ -272,6 +262,26 @@ impl Finding {
                 "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one",
             ),
         }
+    }
+}
+
+/// What is said of a clipped channel, and the remedy.
+fn clipped(
+    channel: Channel,
+    [input, output]: [&str; 2],
+    level: f64,
+    share_percent: f64,
+) -> (String, &'static str) {
+    let of = format!("{share_percent:.1} % of the samples");
+    match channel {
+        Channel::Output => (
+            format!("output rests at {level:.4} {output} for {of} while the command moves"),
+            "widen the sensor's range and record again",
+        ),
+        Channel::Command => (
+            format!("periodic command rests at {level:.2} {input} for {of}"),
+            "record the voltage at the actuator's terminals, or keep the amplifier off its limit",
+        ),
     }
 }
 
