@@ -62,7 +62,7 @@ pub(crate) fn identified(folder: &Folder) -> Result<BenchActuator, SimError> {
 /// Gets the actuators of a case: identifies, reads or makes them.
 ///
 /// # Errors
-/// Every problem of the bench data or the actuator file; [`BenchError::Actuator`](bench_study::BenchError::Actuator) for an
+/// Every problem of the bench data or the actuator file; [`BenchError::Actuator`] for an
 /// identification that fails.
 pub fn case_actuators(loaded: &LoadedCase) -> Result<CaseActuators, SimError> {
     let bench = match &loaded.actuator_source() {

@@ -31,7 +31,7 @@ pub const PAGE_FILE: &str = "report.html";
 /// Diagnoses measured runs against the base model of the reference runs.
 ///
 /// # Errors
-/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data set.
+/// [`BenchError::Diagnosis`] at the place of the data set.
 pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis, SimError> {
     actuator_gap::diagnose(measured, question).map_err(|error| at(&measured.folder, error))
 }
@@ -39,7 +39,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
 /// What planned runs would show on an actuator; `told` hears how many causes of how many are done.
 ///
 /// # Errors
-/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the file of the plan.
+/// [`BenchError::Diagnosis`] at the file of the plan.
 pub fn plan(
     model: &ActuatorModel,
     planned: &Planned<'_>,
@@ -60,7 +60,7 @@ fn at(folder: &str, error: impl Into<DiagnosisError>) -> SimError {
 /// The extended actuator of a diagnosis, as a file holds it.
 ///
 /// # Errors
-/// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data set.
+/// [`BenchError::Diagnosis`] at the place of the data set.
 pub fn extended(found: &Diagnosis) -> Result<StoredActuator, SimError> {
     found.extended().map_err(|source| at(&found.folder, source))
 }

@@ -26,7 +26,7 @@ impl BenchPart {
     /// Of the actuators of a case; none for actuators without data.
     ///
     /// # Errors
-    /// [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a bench record.
+    /// [`BenchError::Actuator`] if a model cannot follow a bench record.
     pub fn of(actuators: &CaseActuators) -> Result<Option<Self>, SimError> {
         let loops = match &actuators.bench {
             Some((data, found)) => bench_loops(data, found)?,
@@ -68,7 +68,7 @@ const MOST_POINTS: usize = 500;
 /// frequency, the larger amplitude first.
 ///
 /// # Errors
-/// [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a record.
+/// [`BenchError::Actuator`] if a model cannot follow a record.
 pub fn bench_loops(
     data: &BenchData,
     found: &BenchIdentification,

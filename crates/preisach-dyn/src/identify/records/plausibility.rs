@@ -100,6 +100,18 @@ impl Line {
     }
 }
 
+impl BenchRecord {
+    /// What identification suspects of the record alone; `is_slow`: whether it may train a static map.
+    pub fn suspicions(&self, is_slow: bool) -> Vec<Finding> {
+        suspicions(self, &self.drive(), is_slow)
+    }
+
+    /// Slope of the straight line through the record where it is judged, deg/V; not finite at rest.
+    pub fn slope_deg_per_volt(&self) -> f64 {
+        Line::of(self).slope
+    }
+}
+
 /// What is suspect about one record.
 pub(crate) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> Vec<Finding> {
     let id = || record.id.clone();

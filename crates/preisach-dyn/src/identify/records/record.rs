@@ -2,8 +2,6 @@
 
 use crate::actuator::model::SAMPLE_TOLERANCE;
 use crate::check::{check_count, check_positive, extremes, not_finite};
-use crate::identify::Finding;
-use crate::identify::records::plausibility::{self, Line};
 use crate::{PreisachError, VoltageRange};
 use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
@@ -125,16 +123,6 @@ impl BenchRecord {
             }
             record
         })
-    }
-
-    /// What identification suspects of the record alone; `is_slow`: whether it may train a static map.
-    pub fn suspicions(&self, is_slow: bool) -> Vec<Finding> {
-        plausibility::suspicions(self, &self.drive(), is_slow)
-    }
-
-    /// Slope of the straight line through the record where it is judged, deg/V; not finite at rest.
-    pub fn slope_deg_per_volt(&self) -> f64 {
-        Line::of(self).slope
     }
 
     /// Whether the command never changes where the record is judged.

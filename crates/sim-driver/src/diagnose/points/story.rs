@@ -39,7 +39,7 @@ impl PointDiagnosis {
     /// Finds what the simulation of a table lacks; with `only`, fits these suspects and refuses nothing.
     ///
     /// # Errors
-    /// [`BenchError::Diagnosis`](bench_study::BenchError::Diagnosis) at the place of the data.
+    /// [`BenchError::Diagnosis`] at the place of the data.
     pub fn of(
         (title, folder): (String, &str),
         data_kind: &'static str,
