@@ -80,11 +80,13 @@ fn read<R: Runner>(runner: &R, text: &str) -> Read {
 /// when it stands alone is an error of the sweep file.
 ///
 /// # Errors
-/// A grid that is too large; every value and field of an axis that the case does not take.
+/// A grid that is too large; a base case that is refused; every value and field of an axis that the case does not take.
 pub fn plan<R: Runner>(file: &SweepFile, base: String, runner: &R) -> Result<Plan, SweepError> {
     let samples = samples(file)?;
     let fields: Vec<String> = file.axes.iter().map(|axis| axis.field.clone()).collect();
     let empty = Plan { fields, cases: vec![], base };
+    // what is wrong with the base case is no fault of an axis
+    read(runner, &empty.base)?;
     let read_one = |values: &Vec<Value>| {
         let texts: Vec<String> = values.iter().map(|(text, _)| text.clone()).collect();
         let text = empty.text(&texts, runner)?;

@@ -162,6 +162,21 @@ fn a_value_that_no_case_takes_is_an_error_with_its_place() {
     }
 }
 
+/// What is wrong with the base case is said once and of it, not of every value of every axis.
+#[test]
+fn a_base_case_that_is_refused_is_no_fault_of_an_axis() {
+    let text = "(base: \"b\", axes: [(field: \"count\", values: [1, 2])])";
+    let source = Source { name: "s.ron".into(), text: text.into() };
+    let file = read_sweep_file(&source, &Folder::Disk("none".into())).unwrap();
+    let runner = ToyRunner::default();
+    let good = runner.read(BASE).unwrap().canonical;
+    let bad = good.replacen("low: 1.0", "low: -1.0", 1);
+    assert_ne!(good, bad);
+    let said = plan(&file, bad, &runner).unwrap_err().to_string();
+    assert!(said.starts_with("case:") && said.contains("low: is -1, expected 0 or more"), "{said}");
+    assert!(!said.contains("axes") && !said.contains("problems"), "{said}");
+}
+
 /// Values that do not go together make a failed case, and the others go on.
 #[test]
 fn failed_cases_are_results_with_their_reason() {
