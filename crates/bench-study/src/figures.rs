@@ -2,10 +2,11 @@
 //!
 //! | file | columns |
 //! |---|---|
-//! | `loop_RUN.csv` | time, input, measured and simulated output, residual (simulated less measured), 1 for the samples judged and 0 outside the run's window |
+//! | `loop_RUN.csv` | time, input, measured and simulated output, residual (measured less simulated), 1 for the samples judged and 0 outside the run's window |
 //! | `forc_diagram.csv` | of reversal curves: reversal, input, half-width, centre, density |
 //! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density, of the model or, if its law has none, of the static Preisach model fitted beside it |
 //!
+//! A record that begins at switch-on has its sample at 0 V first; its times are later by one step.
 //! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
 
 use crate::BenchError;
@@ -55,7 +56,7 @@ fn loop_table(
     for (i, ((u, measured), simulated)) in samples.enumerate() {
         let time_s = record.time_step_s * i as f64;
         let measured = measured - zero_deg;
-        let residual = simulated - measured;
+        let residual = measured - simulated;
         let judged = u8::from(window.contains(&i));
         let _ = writeln!(
             text,

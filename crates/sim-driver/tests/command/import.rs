@@ -549,7 +549,7 @@ fn a_generic_loop_is_identified_in_its_own_units() {
     );
     for line in lines {
         let v: Vec<f64> = line.split(',').map(|f| f.parse().unwrap()).collect();
-        assert!((v[3] - v[2] - v[4]).abs() < 1e-3 * v[4].abs() + 1e-6, "{line}");
+        assert!((v[2] - v[3] - v[4]).abs() < 1e-3 * v[4].abs() + 1e-6, "{line}");
     }
     assert!(
         place
