@@ -1,6 +1,5 @@
 //! The static map `G0` from quasi-static records, by constrained least squares.
 
-use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row, unit};
 use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
@@ -15,8 +14,8 @@ use crate::{PlayMap, PreisachError, PreisachGrid};
 ///      + smoothness * cells * sum_neighbours (m_a - m_b)^2 / spread^2
 /// m_jk = v_j,k+1 - v_jk >= 0,   v_j0 = 0
 /// ```
-/// `N_jk` are the hat functions of the knots. Which cells are neighbours is said by [`Neighbours`];
-/// the reversible part, which sits on the diagonal, is smoothed along it.
+/// `N_jk` are the hat functions of the knots. Neighbouring cells share a side in the
+/// (alpha, beta) plane; the reversible part, which sits on the diagonal, is smoothed along it.
 /// A cell no record crosses takes what its neighbours have.
 ///
 /// `targets_deg` has one row per slow record, one value per sample.
@@ -33,43 +32,7 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
             program.aim(&row, targets[index], weight);
         }
     }
-    let smoothness = Smoothness::of(determined(training), settings);
-    unknowns.solved(grid, program, smoothness, spread * spread)
-}
-
-/// Cells of the (alpha, beta) plane that a density is to be alike in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Neighbours {
-    /// Those that share a side.
-    Sides,
-    /// Plays of one width and the next place: loops of one size look alike wherever they are run. All
-    /// plays of a width alike are the operator of Prandtl and Ishlinskii.
-    EqualWidth,
-}
-
-/// Smoothness of a density: its weight, relative to the squared error, and what is to be alike.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Smoothness {
-    pub(crate) weight: f64,
-    pub(crate) neighbours: Neighbours,
-}
-
-impl Smoothness {
-    /// Where the records determine less than half of the density, plays of one width are taken as alike as the
-    /// records allow: with a weight of 1, a density that changes by all of itself from play to play costs as much
-    /// as an error as large as the motion. Else that of the settings, between cells that share a side.
-    pub(crate) fn of([determined, unknowns]: [usize; 2], settings: &Settings) -> Self {
-        if is_unique(determined, unknowns) {
-            Self { weight: settings.static_smoothness, neighbours: Neighbours::Sides }
-        } else {
-            Self { weight: 1.0, neighbours: Neighbours::EqualWidth }
-        }
-    }
-}
-
-/// Whether the records determine a density: at least half of its numbers.
-pub(crate) fn is_unique(determined: usize, unknowns: usize) -> bool {
-    2 * determined >= unknowns
+    unknowns.solved(grid, program, settings.static_smoothness, spread * spread)
 }
 
 /// The samples of the slow records, the weights of all together 1, without targets.
@@ -105,7 +68,7 @@ pub(crate) fn as_measured(training: &Training) -> Result<PlayMap, PreisachError>
 
 /// Numbers of the density that the slow records determine, and how many there are.
 pub(crate) fn determined(training: &Training) -> [usize; 2] {
-    Unknowns::new(&training.grid).determined(normal(training))
+    [normal(training).rank(RANK), Unknowns::new(&training.grid).count]
 }
 
 /// Information of a direction below this share of the largest counts as none.
@@ -129,18 +92,17 @@ pub(crate) fn merged(mut row: Row) -> Row {
 pub(crate) fn smooth_density(
     levels: usize,
     penalty: f64,
-    neighbours: Neighbours,
     rise: impl Fn(usize, usize, f64) -> Row,
     program: &mut LeastSquaresProgram,
 ) {
     for j in 0..levels {
         for k in 0..levels - j {
             program.at_least(rise(j, k, 1.0), 0.0);
-            let others = match (j, neighbours) {
-                (0, _) | (_, Neighbours::EqualWidth) => [Some((j, k + 1)), None],
+            let neighbours = match j {
+                0 => [Some((0, k + 1)), None],
                 _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
             };
-            for (j2, k2) in others.into_iter().flatten() {
+            for (j2, k2) in neighbours.into_iter().flatten() {
                 if j2 < levels && k2 < levels - j2 {
                     let mut difference = rise(j, k, 1.0);
                     difference.extend(rise(j2, k2, -1.0));
@@ -176,25 +138,19 @@ impl Unknowns {
         &self,
         grid: &PreisachGrid,
         mut program: LeastSquaresProgram,
-        smoothness: Smoothness,
+        smoothness: f64,
         variance: f64,
     ) -> Result<PlayMap, PreisachError> {
         let unit = unit(variance.sqrt());
         program.count_targets_in(unit);
         program.scale(unit * unit / variance);
-        let penalty = unit * unit * smoothness.weight / variance * (self.count - 1) as f64;
-        let rise = |j, k, scale| self.rise(j, k, scale);
-        smooth_density(grid.levels(), penalty, smoothness.neighbours, rise, &mut program);
+        let penalty = unit * unit * smoothness / variance * (self.count - 1) as f64;
+        smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), &mut program);
         let mut solution = program.solve("static map")?;
         for value in &mut solution {
             *value *= unit;
         }
         Ok(self.map(grid, &solution))
-    }
-
-    /// Numbers of the density that a program of samples determines, and how many there are.
-    pub(crate) fn determined(&self, program: &LeastSquaresProgram) -> [usize; 2] {
-        [program.rank(RANK), self.count]
     }
 
     /// The map of a solution.

@@ -3,7 +3,7 @@
 use crate::check::{check_count, check_positive};
 use crate::identify::Settings;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::fit::static_fit::{Smoothness, Unknowns};
+use crate::identify::fit::static_fit::Unknowns;
 use crate::identify::records::record::{UNEQUAL, sample_problem};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach};
 
@@ -22,7 +22,7 @@ pub struct StaticAccumulator {
     grid: PreisachGrid,
     unknowns: Unknowns,
     program: LeastSquaresProgram,
-    settings: Settings,
+    smoothness: f64,
     stride: usize,
     memory: Option<PlayMemory>,
     row: Row,
@@ -47,7 +47,7 @@ impl StaticAccumulator {
             grid,
             program: LeastSquaresProgram::new(unknowns.count),
             unknowns,
-            settings: settings.clone(),
+            smoothness: settings.static_smoothness,
             stride,
             memory: None,
             row: Row::new(),
@@ -122,8 +122,7 @@ impl StaticAccumulator {
         check_positive("variance of the outputs, deg^2", variance)?;
         let mut program = self.program.clone();
         program.scale(1.0 / count);
-        let smoothness = Smoothness::of(self.unknowns.determined(&program), &self.settings);
-        let mut map = self.unknowns.solved(&self.grid, program, smoothness, variance)?;
+        let mut map = self.unknowns.solved(&self.grid, program, self.smoothness, variance)?;
         map.constant += self.first_deg;
         StaticPreisach::new(self.grid, map)
     }
