@@ -220,6 +220,11 @@ pub(crate) fn check_range(
     if fits { Ok(()) } else { Err(ControlError::OutOfRange { what, value, expected }) }
 }
 
+/// Accepts the part of the way that a step goes.
+pub(crate) fn check_gain(gain: f64) -> Result<(), ControlError> {
+    check_range(gain > 0.0 && gain <= 1.0, "relaxation gain", gain, "above 0, at most 1")
+}
+
 /// Accepts a finite number above zero.
 pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), ControlError> {
     check_range(value.is_finite() && value > 0.0, what, value, "a finite number above 0")

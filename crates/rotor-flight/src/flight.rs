@@ -2,7 +2,8 @@
 
 use crate::{FlapMarch, FlightError, RotorPath};
 use hhc_control::{
-    ControlLayout, CycleController, EstimatorSettings, RelaxedController, RelaxedSettings, TMatrix,
+    ControlLayout, Cost, CycleController, EstimatorSettings, RelaxedController, RelaxedSettings,
+    TMatrix,
 };
 use preisach_dyn::ActuatorModel;
 use rand::SeedableRng;
@@ -233,7 +234,7 @@ pub fn fly(flight: &Flight<'_>, guidance: &Guidance) -> Result<Vec<FlightPoint>,
     let mut pilot = Pilot::new(flight, guidance, &start)?;
     let mut flaps = flight.flaps()?;
     let weights = flight.settings.load_weights.diagonal(HUB_OUTPUTS)?;
-    let cost = |loads: &[f64]| loads.iter().zip(&weights).map(|(z, w)| w * z * z).sum::<f64>();
+    let cost = |loads: &[f64]| Cost::of(loads, &weights, &[], 0.0).loads;
     let [settling, window] = flight.cycle_rev;
     let mut failure = flight.failure;
     let (mut points, mut revolutions) = (Vec::new(), 0_usize);

@@ -40,7 +40,6 @@ impl FeedbackLaw {
     /// | `layout` | of the controls of T | - | |
     /// | `rho` | control weight, held | 1/V^2 | >= 0 |
     /// | `gain` | part of the way that a step goes | - | above 0, at most 1 |
-    ///
     /// | `baseline` | loads `Z0` without control | nondimensional | one per row of T |
     ///
     /// With `rho = 0` an error of one flap alone has the same margin of convergence as one of all: `T0^+ T` is the error

@@ -43,12 +43,7 @@ impl FeedbackLaw {
         there: &TMatrix,
     ) -> Result<f64, ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", rho)?;
-        error::check_range(
-            gain > 0.0 && gain <= 1.0,
-            "relaxation gain",
-            gain,
-            "above 0, at most 1",
-        )?;
+        error::check_gain(gain)?;
         let (loads, controls) = self.shape();
         error::check_length("controls of the true T", there.controls(), controls)?;
         error::check_length("loads of the true T", there.loads(), loads)?;

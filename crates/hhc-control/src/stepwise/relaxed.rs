@@ -80,13 +80,7 @@ impl RelaxedController {
     ) -> Result<Self, ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", settings.effort_weight)?;
         error::check_not_negative("rate weight (1/V^2)", settings.rate_weight)?;
-        let gain = settings.gain;
-        error::check_range(
-            gain > 0.0 && gain <= 1.0,
-            "relaxation gain",
-            gain,
-            "above 0, at most 1",
-        )?;
+        error::check_gain(settings.gain)?;
         let limits = &settings.amplitude_limit_volt;
         error::check_length("amplitude limits", limits.len(), layout.pairs())?;
         for &limit in limits.iter().chain([&settings.rate_limit_volt]) {

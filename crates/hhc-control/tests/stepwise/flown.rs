@@ -9,7 +9,10 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-const SEEDS: u64 = 50;
+/// Draws of the noise. No setting was chosen on these.
+const SEEDS: std::ops::Range<u64> = 77_000..77_100;
+/// The five in a hundred that a bar leaves.
+const MOST_BAD: usize = 5;
 /// Largest amplitude at 3 and at 4/rev. At 4/rev the flaps work against each other: with more a flap that fails leaves
 /// above 1.2 `J0`.
 const LIMIT_VOLT: [f64; 2] = [65.0, 20.0];
@@ -127,14 +130,14 @@ fn t_error(found: &TMatrix, exact: &TMatrix) -> f64 {
 fn noise_leaves_the_loop_at_its_optimum() {
     for harmonic in [3, 4] {
         for share in [Some(0.03), None] {
-            let mut bad = 0;
+            let mut bad = 0_usize;
             let mut worst = (0.0_f64, 0.0_f64, 0.0_f64);
-            for seed in 0..SEEDS {
+            for seed in SEEDS {
                 let mut rotor = Rotor::new(harmonic, 0.03, seed);
                 let least = rotor.least(harmonic) / cost(&rotor.z0);
                 let (ratios, end) = fly(&mut rotor, harmonic, &told(share), 200, |_, _, _| ());
                 let excess = mean(&ratios[100..]) - least;
-                bad += u32::from(excess > 0.05 || peak(&ratios[20..]) > least + 0.15);
+                bad += usize::from(excess > 0.05 || peak(&ratios[20..]) > least + 0.15);
                 let noise = end.estimator().noise() / rotor.noise;
                 assert!(peak(&ratios) <= 1.2, "{harmonic} {seed}: {}", peak(&ratios));
                 worst = (worst.0.max(excess), worst.1.max(peak(&ratios[20..]) - least), noise);
@@ -143,7 +146,7 @@ fn noise_leaves_the_loop_at_its_optimum() {
                 }
             }
             println!("{harmonic}/rev, told {share:?}: {bad} bad, worst mean and peak {worst:?}");
-            assert!(bad <= 2, "{harmonic} {share:?}: {bad}");
+            assert!(bad <= MOST_BAD, "{harmonic} {share:?}: {bad}");
         }
     }
 }
@@ -187,11 +190,14 @@ fn a_jump_of_the_baseline_is_followed() {
                 (mean(&ratios[110..]) - least).max(ratios[110] - least)
             };
             let bad = |settings: &EstimatorSettings| {
-                (0..SEEDS).filter(|&seed| late(settings, seed) > 0.05).count()
+                SEEDS.filter(|&seed| late(settings, seed) > 0.05).count()
             };
             let (is, was) = (bad(&told(share)), bad(&as_it_was(share)));
-            println!("{harmonic}/rev, told {share:?}: {was} -> {is} of {SEEDS} above the optimum");
-            assert!(is <= 2 && was > 40, "{harmonic} {share:?}: {was} {is}");
+            println!(
+                "{harmonic}/rev, told {share:?}: {was} -> {is} of {} above the optimum",
+                SEEDS.count()
+            );
+            assert!(is <= MOST_BAD && was > 80, "{harmonic} {share:?}: {was} {is}");
         }
     }
 }
@@ -202,8 +208,8 @@ fn a_jump_of_the_baseline_is_followed() {
 fn a_dead_flap_is_taken_up_by_the_other() {
     for (harmonic, flap) in [(3, 0), (3, 1), (4, 0), (4, 1)] {
         for is_told in [true, false] {
-            let (mut bad, mut highest) = (0, 0.0_f64);
-            for seed in 0..SEEDS {
+            let (mut bad, mut highest) = (0_usize, 0.0_f64);
+            for seed in SEEDS {
                 let mut rotor = Rotor::new(harmonic, 0.03, seed);
                 let before = cost(&rotor.z0);
                 let (ratios, end) =
@@ -218,7 +224,7 @@ fn a_dead_flap_is_taken_up_by_the_other() {
                         }
                     });
                 let least = rotor.least(harmonic) / before;
-                bad += u32::from(mean(&ratios[142..]) - least > 0.05);
+                bad += usize::from(mean(&ratios[142..]) - least > 0.05);
                 highest = highest.max(peak(&ratios[100..]));
                 if is_told {
                     let dead = &end.controller().control_volt()[2 * flap..2 * flap + 2];
@@ -226,7 +232,10 @@ fn a_dead_flap_is_taken_up_by_the_other() {
                 }
             }
             println!("{harmonic}/rev, flap {flap}, told {is_told}: {bad} late, peak {highest:.3}");
-            assert!(bad <= 2 && highest < 1.2, "{harmonic} {flap} {is_told}: {bad} {highest}");
+            assert!(
+                bad <= MOST_BAD && highest < 1.2,
+                "{harmonic} {flap} {is_told}: {bad} {highest}"
+            );
         }
     }
 }

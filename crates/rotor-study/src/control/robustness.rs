@@ -8,8 +8,8 @@ use crate::flaps::PlantError;
 use crate::plant::{HUB_OUTPUTS, RotorPlant, linearised_answer, output_weights};
 use crate::rotor::TrimmedRotor;
 use hhc_control::{
-    ControlError, Cost, CycleController, EstimatorSettings, FeedbackLaw, LoadWeights, Plant,
-    RelaxedController, RelaxedSettings, RunError, TMatrix,
+    ControlError, Cost, CycleController, EstimatorSettings, FeedbackLaw, Plant, RelaxedController,
+    RelaxedSettings, RunError, TMatrix,
 };
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -135,7 +135,30 @@ const GAIN: f64 = 0.5;
 const RATE: f64 = 0.25;
 /// Least noise that a filter is told of.
 const LEAST_NOISE: f64 = 1e-3;
-const CONTROLLERS: [&str; 3] = ["fixed", "adaptive", "adaptive-told"];
+
+/// How T is known in a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// Held.
+    Fixed,
+    /// Estimated with Z0 and the noise.
+    Estimated,
+    /// Estimated with Z0, the noise told.
+    NoiseTold,
+}
+
+impl Known {
+    const ALL: [Self; 3] = [Self::Fixed, Self::Estimated, Self::NoiseTold];
+
+    /// Its name in results.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Estimated => "adaptive",
+            Self::NoiseTold => "adaptive-told",
+        }
+    }
+}
 
 fn disturbances(flaps: usize) -> Vec<Disturbance> {
     let none = Disturbance { t_gain: 1.0, ..Disturbance::default() };
@@ -188,6 +211,7 @@ struct Flights<'a> {
     plant: RotorPlant,
     t0: TMatrix,
     settings: RelaxedSettings,
+    weights: Vec<f64>,
     baseline: Vec<f64>,
     rms: f64,
 }
@@ -225,12 +249,14 @@ impl<'a> Flights<'a> {
             .map_err(failed)?;
         let baseline = measured.outputs;
         let weights = output_weights(&set.load_weights(), t0.loads());
-        let law = FeedbackLaw::new(&t0, &weights).map_err(RunError::Control).map_err(failed)?;
+        let refused = |error| failed(RunError::Control(error));
+        let law = FeedbackLaw::new(&t0, &weights).map_err(refused)?;
         let effort_weight = match set.case.control.effort {
             EffortChoice::Given { rho } => rho,
             EffortChoice::MeetStroke | EffortChoice::Limits => least_effort(&law),
         };
         let amplitude_volt = set.limits.iter().map(|l| l.amplitude_volt).fold(f64::MAX, f64::min);
+        let each_weight = weights.diagonal(t0.loads()).map_err(refused)?;
         let settings = RelaxedSettings {
             load_weights: weights,
             effort_weight,
@@ -241,31 +267,28 @@ impl<'a> Flights<'a> {
         };
         let squares = baseline[..HUB_OUTPUTS].iter().map(|z| z * z).sum::<f64>();
         let rms = (squares / HUB_OUTPUTS as f64).sqrt();
-        Ok(Self { set, plant, t0, settings, baseline, rms })
+        Ok(Self { set, plant, t0, settings, weights: each_weight, baseline, rms })
     }
 
     fn cost(&self, outputs: &[f64]) -> f64 {
-        let LoadWeights::Diagonal(weights) = &self.settings.load_weights else {
-            return outputs.iter().map(|z| z * z).sum();
-        };
-        Cost::of(outputs, weights, &[], 0.0).loads
+        Cost::of(outputs, &self.weights, &[], 0.0).loads
     }
 
     fn controller(
         &self,
-        name: &str,
+        known: Known,
         disturbance: &Disturbance,
         start: &[f64],
     ) -> Result<Flying, ControlError> {
         let layout = self.plant.layout();
         let t0 = wrong_t(&self.t0, disturbance, layout.flaps())?;
         let relaxed = RelaxedController::new(layout, t0.loads(), self.settings.clone())?;
-        if name == CONTROLLERS[0] {
+        if known == Known::Fixed {
             return Ok(Flying::Fixed(Box::new(relaxed), t0));
         }
         let share = (0.01 * disturbance.noise_percent).max(LEAST_NOISE);
         let settings = EstimatorSettings {
-            noise_share: (name == CONTROLLERS[2]).then_some(share),
+            noise_share: (known == Known::NoiseTold).then_some(share),
             ..EstimatorSettings::in_flight(self.set.case.control.amplitude_volt)
         };
         let cycle = CycleController::new(relaxed, &settings, &t0, start)?;
@@ -275,7 +298,7 @@ impl<'a> Flights<'a> {
     /// `J / J0` of every cycle, without noise.
     fn fly(
         &self,
-        name: &str,
+        known: Known,
         disturbance: &Disturbance,
         seed: u64,
     ) -> Result<Vec<f64>, RunError<PlantError>> {
@@ -283,7 +306,7 @@ impl<'a> Flights<'a> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut start = self.baseline.clone();
         add_noise(&mut start[..HUB_OUTPUTS], noise, &mut random);
-        let mut flying = self.controller(name, disturbance, &start)?;
+        let mut flying = self.controller(known, disturbance, &start)?;
         let before = self.cost(&self.baseline);
         let mut ratios = Vec::with_capacity(CYCLES);
         let mut left = 1.0;
@@ -302,13 +325,13 @@ impl<'a> Flights<'a> {
 
     fn cell(
         &self,
-        name: &str,
+        known: Known,
         disturbance: Disturbance,
         done: &(dyn Fn() + Sync),
     ) -> Result<RobustnessCell, RunError<PlantError>> {
         let draws = if disturbance.noise_percent > 0.0 { DRAWS } else { 1 };
         let flights = (SEED..SEED + draws as u64)
-            .map(|seed| self.fly(name, &disturbance, seed).inspect(|_| done()))
+            .map(|seed| self.fly(known, &disturbance, seed).inspect(|_| done()))
             .collect::<Result<Vec<_>, _>>()?;
         let ends: Vec<f64> = flights
             .iter()
@@ -317,7 +340,7 @@ impl<'a> Flights<'a> {
         let largest = |numbers: &mut dyn Iterator<Item = f64>| numbers.fold(0.0, f64::max);
         Ok(RobustnessCell {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
-            controller: name.to_owned(),
+            controller: known.name().to_owned(),
             disturbance,
             cycles: CYCLES,
             draws,
@@ -360,7 +383,7 @@ pub fn robustness_flights(case: &Case) -> usize {
         .iter()
         .map(|d| if d.noise_percent > 0.0 { DRAWS } else { 1 })
         .sum::<usize>();
-    harmonics(case).count() * draws * CONTROLLERS.len()
+    harmonics(case).count() * draws * Known::ALL.len()
 }
 
 /// The maps and margins of every harmonic that a case controls alone on the hysteretic actuator: flights of a fixed number
@@ -385,13 +408,13 @@ pub fn robustness_maps(
         let flights = Flights::new(&set).map_err(located)?;
         let failed = |source| located(set.failed(ControlActuator::Hysteretic, source));
         margins.push(flights.margins().map_err(RunError::Control).map_err(failed)?);
-        let cells: Vec<(Disturbance, &str)> = disturbances(case.flaps.len())
+        let cells: Vec<(Disturbance, Known)> = disturbances(case.flaps.len())
             .into_iter()
-            .flat_map(|disturbance| CONTROLLERS.map(|name| (disturbance, name)))
+            .flat_map(|disturbance| Known::ALL.map(|known| (disturbance, known)))
             .collect();
         let cells = cells
             .into_par_iter()
-            .map(|(disturbance, name)| flights.cell(name, disturbance, done))
+            .map(|(disturbance, known)| flights.cell(known, disturbance, done))
             .collect::<Result<Vec<_>, _>>()
             .map_err(failed)?;
         maps.extend(cells);

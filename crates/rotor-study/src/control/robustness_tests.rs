@@ -52,18 +52,18 @@ fn flights_end_where_the_study_does_and_feel_what_disturbs_them() {
         let study = crate::control::control_set(case, rotor, drives, &[3], &|| ()).unwrap();
         let least = study[0].j_after / study[0].j_before;
         let fly = |name, disturbance| flights.fly(name, &disturbance, SEED).unwrap();
-        for name in CONTROLLERS {
+        for name in Known::ALL {
             let ratios = fly(name, NONE);
-            println!("{name}: {:.4} {:.4}, study {least:.4}", ratios[0], end(&ratios));
+            println!("{name:?}: {:.4} {:.4}, study {least:.4}", ratios[0], end(&ratios));
             assert!((ratios[0] - 1.0).abs() < 1e-12);
-            assert!((end(&ratios) - least).abs() < 0.01, "{name}: {} {least}", end(&ratios));
+            assert!((end(&ratios) - least).abs() < 0.01, "{name:?}: {} {least}", end(&ratios));
         }
         // a gain that is lost with every cycle is given back by more voltage where there is some, and costs little
-        let drift = fly("fixed", Disturbance { drift_percent: 2.0, ..NONE });
-        assert!(end(&drift) > end(&fly("fixed", NONE)) + 1e-4, "{}", end(&drift));
+        let drift = fly(Known::Fixed, Disturbance { drift_percent: 2.0, ..NONE });
+        assert!(end(&drift) > end(&fly(Known::Fixed, NONE)) + 1e-4, "{}", end(&drift));
         // a phase beyond the margin of theory, acos(gain / 2), leads away; one well below ends near, where limits bind
-        let beyond = fly("fixed", Disturbance { t_phase_deg: 100.0, ..NONE });
-        let below = fly("fixed", Disturbance { t_phase_deg: 45.0, ..NONE });
+        let beyond = fly(Known::Fixed, Disturbance { t_phase_deg: 100.0, ..NONE });
+        let below = fly(Known::Fixed, Disturbance { t_phase_deg: 45.0, ..NONE });
         assert!(end(&beyond) > 1.0 && (end(&below) - least).abs() < 0.05, "{beyond:?} {below:?}");
     });
 }
@@ -73,12 +73,12 @@ fn flights_end_where_the_study_does_and_feel_what_disturbs_them() {
 fn controllers_share_their_noise() {
     with_flights(|flights, _, _, _| {
         let noisy = Disturbance { noise_percent: 10.0, ..NONE };
-        let cell = flights.cell("fixed", noisy, &|| ()).unwrap();
+        let cell = flights.cell(Known::Fixed, noisy, &|| ()).unwrap();
         assert_eq!((cell.draws, cell.cycles), (DRAWS, CYCLES));
         assert!(cell.end_range[0] < cell.end_ratio && cell.end_ratio < cell.end_range[1]);
         // the first step of both has the same noise behind it
         let first = |name| flights.fly(name, &noisy, SEED).unwrap()[0];
-        assert_eq!(first("fixed").to_bits(), first("adaptive").to_bits());
+        assert_eq!(first(Known::Fixed).to_bits(), first(Known::Estimated).to_bits());
         let margins = flights.margins().unwrap();
         let theory = (GAIN / 2.0).acos().to_degrees();
         assert!((margins.common_phase_deg - theory).abs() < 1.0, "{margins:?}");
