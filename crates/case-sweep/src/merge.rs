@@ -4,7 +4,6 @@ use crate::status::{Status, status};
 use crate::store::{Cell, Outcome, Store};
 use crate::{Plan, SweepError};
 use serde::{Serialize, Serializer};
-use std::fmt::Write as _;
 
 /// Keys and files that a message names; of more it says how many.
 const NAMED: usize = 5;
@@ -113,30 +112,31 @@ impl Merged {
 
     /// The table: number, axes, `failed`, columns, `warnings` (how many) and key; an empty cell has no value.
     pub fn csv(&self) -> String {
-        let names = self.axes.iter().map(|field| quoted(field));
-        let columns = self.columns.iter().map(|name| quoted(name));
-        let header: Vec<String> = names.chain(["failed".to_owned()]).chain(columns).collect();
-        let mut text = format!("case,{},warnings,key\n", header.join(","));
-        for case in &self.cases {
-            let mut row: Vec<String> = case.values.iter().map(|(_, cell)| shown(cell)).collect();
-            row.push(quoted(case.failed.as_deref().unwrap_or_default()));
-            let found = |name: &String| case.found.iter().find(|(own, _)| own == name);
-            row.extend(
-                self.columns
-                    .iter()
-                    .map(|name| found(name).map_or_else(String::new, |(_, cell)| shown(cell))),
-            );
-            // writing to a string cannot fail
-            let _ = writeln!(
-                text,
-                "{},{},{},{}",
-                case.case,
-                row.join(","),
-                case.warnings.len(),
-                case.key
-            );
+        let one = |cell: &str| cell.replace(['\n', '\r'], " ");
+        let mut header = vec!["case".to_owned()];
+        header.extend(self.axes.iter().map(|field| one(field)));
+        header.push("failed".to_owned());
+        header.extend(self.columns.iter().map(|name| one(name)));
+        header.extend(["warnings".to_owned(), "key".to_owned()]);
+        let row =
+            |case: &MergedCase| {
+                let found = |name: &String| case.found.iter().find(|(own, _)| own == name);
+                let mut row = vec![case.case.to_string()];
+                row.extend(case.values.iter().map(|(_, cell)| one(&shown(cell))));
+                row.push(one(case.failed.as_deref().unwrap_or_default()));
+                let columns = self.columns.iter();
+                row.extend(columns.map(|name| {
+                    found(name).map_or_else(String::new, |(_, cell)| one(&shown(cell)))
+                }));
+                row.extend([case.warnings.len().to_string(), case.key.clone()]);
+                row
+            };
+        let mut table = csv::Writer::from_writer(Vec::new());
+        for row in std::iter::once(header).chain(self.cases.iter().map(row)) {
+            // writing to memory cannot fail
+            let _ = table.write_record(row);
         }
-        text
+        String::from_utf8(table.into_inner().unwrap_or_default()).unwrap_or_default()
     }
 }
 
@@ -147,13 +147,7 @@ fn shown(cell: &Cell) -> String {
             format!("{value:e}")
         }
         Cell::Number(value) => format!("{value}"),
-        Cell::Text(text) => quoted(text),
+        Cell::Text(text) => text.clone(),
         Cell::Nothing(()) => String::new(),
     }
-}
-
-/// A text as a cell of a CSV, on one line.
-fn quoted(text: &str) -> String {
-    let line = text.replace(['\n', '\r'], " ");
-    if line.contains([',', '"']) { format!("\"{}\"", line.replace('"', "\"\"")) } else { line }
 }
