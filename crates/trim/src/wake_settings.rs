@@ -1,7 +1,7 @@
 //! How a trim is coupled with a free wake, and how the coupling ended.
 
 use crate::TrimError;
-use rotor_wake::{FreeWakeSettings, WakeMethod};
+use rotor_wake::{FarField, FreeWakeSettings, WakeMethod};
 
 /// How a trim is coupled with a free wake.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,8 +28,9 @@ pub struct WakeTrimSettings {
 
 impl Default for WakeTrimSettings {
     fn default() -> Self {
+        let far_field = FarField::Single;
         Self {
-            wake: FreeWakeSettings::default().with_azimuths(36),
+            wake: FreeWakeSettings { far_field, ..FreeWakeSettings::default() }.with_azimuths(36),
             panels: 20,
             stages: vec![12],
             inflow_tolerance: 2e-4,

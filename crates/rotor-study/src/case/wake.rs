@@ -160,8 +160,8 @@ section! {
         /// `Relaxed`: sweeps of pseudo-implicit relaxation. `Marched`: revolutions in time (PC2B), three per
         /// update.
         pub method: WakeMethod = WakeMethod::Relaxed, Any, "", "";
-        /// Precision of the velocities of rolled-up vortices older than a revolution; by the preset `Double`, `Single`
-        /// if fast.
+        /// Precision of the velocities that rolled-up vortices older than a revolution induce on the wake; by the preset
+        /// `Single`, `Double` in hover.
         pub far_field: Option<FarField> = None, Any, "", "";
         /// Velocities of the relaxed wake are computed at every n-th age and interpolated between along the
         /// path of the air; by the preset 1, 2 if fast.
@@ -212,7 +212,7 @@ impl WakePreset {
             rolled_up: RolledUpChoice::Tip,
             core: CoreModel::Vatistas,
             symmetry: WakeSymmetry::Periodic,
-            far_field: FarField::Double,
+            far_field: FarField::Single,
             velocity_stride: 1,
         };
         match self {
@@ -223,12 +223,13 @@ impl WakePreset {
                 rolled_up: RolledUpChoice::TipRootAndSheet,
                 core: CoreModel::RosenheadMoore,
                 symmetry: WakeSymmetry::Axial,
+                // nothing in a hovering wake damps what rounding leaves
+                far_field: FarField::Double,
                 ..flight
             },
             Self::Fast => WakeChoices {
                 azimuths: 24,
                 turns: 2,
-                far_field: FarField::Single,
                 velocity_stride: 2,
                 ..flight
             },
