@@ -336,6 +336,44 @@ fn records_outside_the_class_are_called_so() {
     assert!(!outside(1.0));
 }
 
+/// Plays of 40 half-widths up to 60 V, the wider ones weighing less, from rest.
+fn plays(voltage_volt: &[f64]) -> Vec<f64> {
+    let mut states = [voltage_volt[0]; 40];
+    let step = |&u: &f64| {
+        let moved = states.iter_mut().zip(1..).map(|(state, place)| {
+            let half_width_volt = 1.5 * f64::from(place);
+            *state = state.clamp(u - half_width_volt, u + half_width_volt);
+            *state * (-half_width_volt / 30.0).exp()
+        });
+        0.05 * u + 0.01 * moved.sum::<f64>()
+    };
+    voltage_volt.iter().map(step).collect()
+}
+
+/// One major loop says nothing of the loops inside it. Plays of one width taken as alike foretell them, as most
+/// piezo actuators are; a density smooth in every direction leaves 2.3 to 4 % of
+/// their spread.
+#[test]
+fn loops_inside_the_only_one_recorded_are_foretold() {
+    let wave = |record_use, off: f64, amplitude_volt: f64| {
+        let wave = move |t: f64| {
+            BIAS_VOLT + off * (t / 5.0).min(1.0) + amplitude_volt * (TAU * 0.2 * t).sin()
+        };
+        let of = record(&format!("{amplitude_volt} V about {off} V"), 20.0, 5e-3, wave);
+        let output_deg = plays(&of.voltage_volt);
+        BenchRecord { output_deg, record_use: Some(record_use), ..of }
+    };
+    let inner = [(-45.0, 30.0), (40.0, 30.0), (0.0, 45.0)];
+    let inner = inner.map(|(off, amplitude_volt)| wave(RecordUse::HeldOut, off, amplitude_volt));
+    let records = [&[wave(RecordUse::Train, 0.0, 85.0)], &inner[..]].concat();
+    let identified = identify(&records, &Settings::default()).unwrap();
+    let free = |f: &Finding| matches!(f, Finding::DensityNotUnique { .. });
+    assert!(identified.summary.findings.iter().any(free), "{:?}", identified.summary);
+    for report in &identified.records {
+        assert!(report.static_only.nrmse < 0.005, "{}: {:?}", report.id, report.static_only);
+    }
+}
+
 /// A record that begins as the amplifier is switched on: the output jumps, the command does not. With 0 V before it
 /// the model has the memory that the actuator has. A record from rest is left alone.
 #[test]

@@ -227,12 +227,7 @@ impl WakePreset {
                 far_field: FarField::Double,
                 ..flight
             },
-            Self::Fast => WakeChoices {
-                azimuths: 24,
-                turns: 2,
-                velocity_stride: 2,
-                ..flight
-            },
+            Self::Fast => WakeChoices { azimuths: 24, turns: 2, velocity_stride: 2, ..flight },
         }
     }
 }

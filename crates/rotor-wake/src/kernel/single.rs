@@ -67,7 +67,8 @@ fn add_one<const MOORE: bool>(at: &Lanes, segment: &PreparedSingle, sum: &mut La
             let sharp = q > 0.0;
             let above = if sharp { cross } else { p - q };
             let below = if sharp { p + q } else { 1.0 };
-            let denominator = product * (cross * cross + segment.core) * (below * below) + GUARD_SQUARED;
+            let denominator =
+                product * (cross * cross + segment.core) * (below * below) + GUARD_SQUARED;
             above * ((s1 + s2 + 2.0 * p) / denominator).sqrt()
         };
         let factor = segment.strength * factor;

@@ -15,6 +15,7 @@ use crate::actuator::{BENCH, identified};
 use validation::{Check, Failure, root, row, shared, too_few, worst};
 
 const FORC: &str = "152 measured curves, fixtures/measured/forc";
+const PIEZO: &str = "measured piezo stage, fixtures/measured/piezo_stage";
 const DAMPER: &str = "measured friction damper, fixtures/measured/friction_damper";
 
 pub(crate) const ROWS: &[Check] = &[
@@ -72,6 +73,13 @@ pub(crate) const ROWS: &[Check] = &[
     row("V-ACT-36", "the same, static Preisach: rising plays cannot lead", "%")
         .against(DAMPER)
         .at_least(80.0, || damper(Family::StaticPreisach)),
+    row(
+        "V-ACT-39",
+        "piezo stage, trained on one loop of 1 Hz, inner loops, fade and hold: NRMSE",
+        "%",
+    )
+    .against(PIEZO)
+    .at_most(9.0, piezo_stage),
 ];
 
 /// The table of some families on a data set, made once for all checks.
@@ -126,6 +134,15 @@ fn damper(family: Family) -> Result<f64, Failure> {
     let row = table.rows.iter().find(|row| row.family == family);
     let error = row.and_then(|row| table.error_over(row, RecordUse::HeldOut));
     Ok(error.map_or(f64::NAN, |(rms, _)| 100.0 * rms))
+}
+
+/// Trained on the open loop alone: the record driven through an inverse.
+fn piezo_stage() -> Result<f64, Failure> {
+    let data = read_bench(&Folder::Disk(root().join("fixtures/measured/piezo_stage")))?;
+    let found = identify_bench(&data, &Settings::default(), None)?;
+    let records = &found.identification.records;
+    let held_out = records.iter().find(|record| record.record_use == RecordUse::HeldOut);
+    Ok(held_out.map_or(f64::NAN, |record| record.dynamic.nrmse_percent()))
 }
 
 /// The measured file imported as `hhc import` does, then identified.

@@ -102,14 +102,14 @@ impl LeastSquaresProgram {
 
     /// The number of directions of the unknowns that the rows added so far determine: the rank of
     /// their normal matrix by Cholesky's method with pivoting, down to `relative` of the largest
-    /// pivot.
-    pub(crate) fn rank(&self, relative: f64) -> usize {
+    /// pivot. Counted up to `most`.
+    pub(crate) fn rank(&self, relative: f64, most: usize) -> usize {
         let n = self.unknowns;
         let at = |a: &[f64], r: usize, c: usize| a[packed(r.min(c), r.max(c))];
         let mut rest: Vec<f64> = (0..n).map(|i| self.normal[packed(i, i)]).collect();
         let largest = rest.iter().copied().fold(0.0, f64::max);
         let mut columns: Vec<Vec<f64>> = Vec::new();
-        while columns.len() < n {
+        while columns.len() < n.min(most) {
             let (pivot, value) = largest_above(0.0, rest.iter().copied());
             if value <= relative * largest {
                 break;
@@ -242,14 +242,14 @@ mod tests {
 
     #[test]
     fn the_rank_counts_what_the_rows_determine() {
-        assert_eq!(line().rank(1e-9), 2);
+        assert_eq!(line().rank(1e-9, 3), 2);
         let mut program = LeastSquaresProgram::new(4);
         for (a, b) in [(1.0, 2.0), (0.5, -1.0), (3.0, 0.1)] {
             // x0 and x1 only in the combination x0 + 2 x1; x3 never
             program.add(&[(0, a), (1, 2.0 * a), (2, b)], 0.0, 1.0);
         }
-        assert_eq!(program.rank(1e-9), 2);
-        assert_eq!(LeastSquaresProgram::new(3).rank(1e-9), 0);
+        assert_eq!(program.rank(1e-9, 3), 2);
+        assert_eq!(LeastSquaresProgram::new(3).rank(1e-9, 3), 0);
     }
 
     #[test]

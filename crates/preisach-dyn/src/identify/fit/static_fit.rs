@@ -14,8 +14,8 @@ use crate::{PlayMap, PreisachError, PreisachGrid};
 ///      + smoothness * cells * sum_neighbours (m_a - m_b)^2 / spread^2
 /// m_jk = v_j,k+1 - v_jk >= 0,   v_j0 = 0
 /// ```
-/// `N_jk` are the hat functions of the knots. Neighbouring cells share a side in the
-/// (alpha, beta) plane; the reversible part, which sits on the diagonal, is smoothed along it.
+/// `N_jk` are the hat functions of the knots. Which cells are neighbours is said by [`Neighbours`];
+/// the reversible part, which sits on the diagonal, is smoothed along it.
 /// A cell no record crosses takes what its neighbours have.
 ///
 /// `targets_deg` has one row per slow record, one value per sample.
@@ -34,6 +34,25 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
     }
     unknowns.solved(grid, program, settings.static_smoothness, spread * spread)
 }
+
+/// Cells of the (alpha, beta) plane that a density is to be alike in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Neighbours {
+    /// Those that share a side.
+    Sides,
+    /// Plays of one width and the next place: loops of one size look alike wherever they are run. All
+    /// plays of a width alike are the operator of Prandtl and Ishlinskii. The first play of a width is a neighbour of
+    /// that of the next width, hardly as strongly: no width is free.
+    EqualWidth,
+}
+
+/// Weight of plays of one width: a density that changes by all of itself from play to play costs as much as
+/// an error as large as the motion.
+const EQUAL_WIDTH: f64 = 1.0;
+/// Weight of neighbouring widths over that of places.
+const BETWEEN_WIDTHS: f64 = 1e-5;
+/// Numbers of a play that a loop and the rise to it determine, at most.
+const OF_A_LOOP: usize = 3;
 
 /// The samples of the slow records, the weights of all together 1, without targets.
 fn normal<'a>(training: &'a Training) -> &'a LeastSquaresProgram {
@@ -68,7 +87,8 @@ pub(crate) fn as_measured(training: &Training) -> Result<PlayMap, PreisachError>
 
 /// Numbers of the density that the slow records determine, and how many there are.
 pub(crate) fn determined(training: &Training) -> [usize; 2] {
-    [normal(training).rank(RANK), Unknowns::new(&training.grid).count]
+    let count = Unknowns::new(&training.grid).count;
+    [normal(training).rank(RANK, count), count]
 }
 
 /// Information of a direction below this share of the largest counts as none.
@@ -92,21 +112,29 @@ pub(crate) fn merged(mut row: Row) -> Row {
 pub(crate) fn smooth_density(
     levels: usize,
     penalty: f64,
+    neighbours: Neighbours,
     rise: impl Fn(usize, usize, f64) -> Row,
     program: &mut LeastSquaresProgram,
 ) {
     for j in 0..levels {
         for k in 0..levels - j {
             program.at_least(rise(j, k, 1.0), 0.0);
-            let neighbours = match j {
-                0 => [Some((0, k + 1)), None],
-                _ => [Some((j + 1, k)), k.checked_sub(1).map(|lower| (j + 1, lower))],
+            let next_width = |share: f64| ((j + 1, k), share);
+            let others = match (neighbours, j, k) {
+                (Neighbours::Sides, 0, _) => [Some(((0, k + 1), 1.0)), None],
+                (Neighbours::Sides, ..) => {
+                    [Some(next_width(1.0)), k.checked_sub(1).map(|lower| ((j + 1, lower), 1.0))]
+                }
+                (Neighbours::EqualWidth, _, 0) => {
+                    [Some(((j, 1), 1.0)), Some(next_width(BETWEEN_WIDTHS))]
+                }
+                (Neighbours::EqualWidth, ..) => [Some(((j, k + 1), 1.0)), None],
             };
-            for (j2, k2) in neighbours.into_iter().flatten() {
+            for ((j2, k2), share) in others.into_iter().flatten() {
                 if j2 < levels && k2 < levels - j2 {
                     let mut difference = rise(j, k, 1.0);
                     difference.extend(rise(j2, k2, -1.0));
-                    program.add(&merged(difference), 0.0, penalty);
+                    program.add(&merged(difference), 0.0, share * penalty);
                 }
             }
         }
@@ -133,7 +161,8 @@ pub(crate) struct Unknowns {
 
 impl Unknowns {
     /// The map that a program of samples leads to, whose weights sum to one: with smoothness per cell
-    /// and the bounds of the density. `variance` is that of the targets.
+    /// and the bounds of the density. Where the samples are of one loop alone, plays of one width are alike instead.
+    /// `variance` is that of the targets.
     pub(crate) fn solved(
         &self,
         grid: &PreisachGrid,
@@ -141,11 +170,18 @@ impl Unknowns {
         smoothness: f64,
         variance: f64,
     ) -> Result<PlayMap, PreisachError> {
+        let of_a_loop = OF_A_LOOP * grid.levels();
+        let (neighbours, weight) = if program.rank(RANK, of_a_loop + 1) <= of_a_loop {
+            (Neighbours::EqualWidth, EQUAL_WIDTH)
+        } else {
+            (Neighbours::Sides, smoothness)
+        };
         let unit = unit(variance.sqrt());
         program.count_targets_in(unit);
         program.scale(unit * unit / variance);
-        let penalty = unit * unit * smoothness / variance * (self.count - 1) as f64;
-        smooth_density(grid.levels(), penalty, |j, k, scale| self.rise(j, k, scale), &mut program);
+        let penalty = unit * unit * weight / variance * (self.count - 1) as f64;
+        let rise = |j, k, scale| self.rise(j, k, scale);
+        smooth_density(grid.levels(), penalty, neighbours, rise, &mut program);
         let mut solution = program.solve("static map")?;
         for value in &mut solution {
             *value *= unit;
