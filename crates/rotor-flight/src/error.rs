@@ -6,7 +6,7 @@ use rotor_response::ResponseError;
 use rotor_study::StudyError;
 
 /// Rejected input and numerical failures of a flight.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FlightError {
     /// A number outside its range.
@@ -26,6 +26,14 @@ pub enum FlightError {
         advance_ratio: f64,
         /// Its own error.
         source: Box<StudyError>,
+    },
+    /// A free wake that found no solution at a knot.
+    #[error(
+        "the free wake at an advance ratio of {advance_ratio} diverged; fly in another inflow (Drees), or see `hhc wake` for why"
+    )]
+    WakeDiverged {
+        /// Of the knot.
+        advance_ratio: f64,
     },
     /// A rotor that cannot be linearised.
     #[error("the linearised rotor at an advance ratio of {advance_ratio}: {source}")]
