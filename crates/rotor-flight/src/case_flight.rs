@@ -120,7 +120,7 @@ pub fn fly_case(
 fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, FlightError> {
     let (from, to) = (values.start_advance_ratio, values.end_advance_ratio);
     let (low, span) = (from.min(to), (to - from).abs());
-    let knots = if span > 0.0 { values.knots } else { 1 };
+    let knots = if values.is_level() { 1 } else { values.knots };
     let place = |k: usize| low + span * k as f64 / (knots - 1).max(1) as f64;
     let path = RotorPath::new(case, &(0..knots).map(place).collect::<Vec<f64>>())?;
     match &values.thrust_step {
@@ -210,9 +210,8 @@ fn guidance_of(controller: FlightController, case: &Case, values: &FlightValues)
 
 /// When the last change of the schedule has ended, s; 0 without any.
 fn last_disturbance_s(values: &FlightValues) -> f64 {
-    let changes = values.start_advance_ratio.to_bits() != values.end_advance_ratio.to_bits();
     let ends = [
-        changes.then_some(values.ramp_at_s + values.ramp_s),
+        (!values.is_level()).then_some(values.ramp_at_s + values.ramp_s),
         values.thrust_step.map(|step| step.at_s + step.length_s),
         values.failed_flap.map(|failed| failed.at_s),
     ];

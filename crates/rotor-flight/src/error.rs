@@ -55,3 +55,15 @@ pub enum FlightError {
     #[error(transparent)]
     Control(#[from] ControlError),
 }
+
+impl FlightError {
+    /// Field of the case that asked for what failed.
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Trim { source, .. } => source.field(),
+            Self::WakeDiverged { .. } => "inflow.model",
+            Self::Actuator { .. } => "actuator",
+            Self::OutOfRange { .. } | Self::Response { .. } | Self::Control(_) => "flight",
+        }
+    }
+}

@@ -80,6 +80,8 @@ pub struct FlightPoint {
     pub cost_ratio: f64,
     /// Loads without noise, cosine and sine of six at the blade number per rev, nondimensional.
     pub loads: [f64; HUB_OUTPUTS],
+    /// The same without control.
+    pub loads_at_rest: [f64; HUB_OUTPUTS],
     /// The control that acted, V.
     pub control_volt: Vec<f64>,
     /// Whether a limit of an amplitude bound when it was chosen.
@@ -233,7 +235,7 @@ impl Flown<'_> {
             }
         }
         let (time_s, state) = (self.time_s(), flight.state_at(self.time_s()));
-        let cost = self.cost(&loads);
+        let (cost, loads_at_rest) = (self.cost(&loads), flight.path.loads(state, &[])?);
         let amplitudes = |flap: &HarmonicSeries| {
             (1..=HARMONICS as usize).map(|n| flap.harmonic(n).amplitude()).collect()
         };
@@ -242,8 +244,9 @@ impl Flown<'_> {
             advance_ratio: state.advance_ratio,
             thrust_share: state.thrust_share,
             cost,
-            cost_ratio: cost / self.cost(&flight.path.loads(state, &[])?),
+            cost_ratio: cost / self.cost(&loads_at_rest),
             loads,
+            loads_at_rest,
             control_volt: pilot.control_volt().to_vec(),
             is_limited: pilot.is_limited(),
             flap_deg: motion.iter().map(amplitudes).collect(),

@@ -103,11 +103,6 @@ impl RotorPath {
         &self.advance_ratios
     }
 
-    /// The trimmed rotors of the start of the step, in the order of the knots.
-    pub fn rotors(&self) -> &[TrimmedRotor] {
-        &self.rows[0]
-    }
-
     /// The knots about a state: advance ratio, rotor and weight.
     fn about(&self, state: FlightState) -> impl Iterator<Item = (f64, &TrimmedRotor, f64)> {
         let share = if self.rows.len() > 1 { state.thrust_share } else { 0.0 };

@@ -96,6 +96,13 @@ section! {
     }
 }
 
+impl FlightValues {
+    /// Whether the advance ratio stays as it is.
+    pub fn is_level(&self) -> bool {
+        self.start_advance_ratio.to_bits() == self.end_advance_ratio.to_bits()
+    }
+}
+
 section! {
     /// A step of the thrust of a flight.
     #[derive(Copy)]
