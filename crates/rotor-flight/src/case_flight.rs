@@ -42,7 +42,7 @@ pub struct FlownController {
 pub struct FlightSummary {
     /// Mean of `J / J0` over all cycles.
     pub mean_cost_ratio: f64,
-    /// The largest, and when, s.
+    /// The largest, of the cycles with control: the first has none yet.
     pub worst_cost_ratio: f64,
     /// End of that cycle, s.
     pub worst_at_s: f64,
@@ -72,6 +72,7 @@ impl FlightSummary {
             .then(|| (points[settled].time_s - disturbed_s).max(0.0));
         let (worst_cost_ratio, worst_at_s) = points
             .iter()
+            .skip(1)
             .map(|p| (p.cost_ratio, p.time_s))
             .fold((0.0, 0.0), |worst, own| if own.0 > worst.0 { own } else { worst });
         Self {

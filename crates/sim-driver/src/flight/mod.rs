@@ -47,7 +47,10 @@ pub fn flown(loaded: &LoadedCase) -> Result<FlightResult, SimError> {
         let fault = Fault::Refused { message: NO_FLIGHT.to_owned() };
         return Err(Problem::new(loaded.index.place("flight"), fault).into());
     };
-    let actuators = case_actuators(loaded)?;
+    // what is said of the actuator is of the harmonics flown
+    let mut flying = loaded.clone();
+    flying.case.control.harmonics = vec![values.harmonics.clone()];
+    let actuators = case_actuators(&flying)?;
     let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
     let progress = Progress::new(1 + values.controllers.len());
     progress.doing("trims and flights");
