@@ -6,7 +6,7 @@ use rotor_response::ResponseError;
 use rotor_study::StudyError;
 
 /// Rejected input and numerical failures of a flight.
-#[derive(Debug, thiserror::Error)]
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FlightError {
     /// A number outside its range.
@@ -27,6 +27,14 @@ pub enum FlightError {
         /// Its own error.
         source: Box<StudyError>,
     },
+    /// A free wake that found no solution at a knot.
+    #[error(
+        "the free wake at an advance ratio of {advance_ratio} diverged; fly in another inflow (Drees), or see `hhc wake` for why"
+    )]
+    WakeDiverged {
+        /// Of the knot.
+        advance_ratio: f64,
+    },
     /// A rotor that cannot be linearised.
     #[error("the linearised rotor at an advance ratio of {advance_ratio}: {source}")]
     Response {
@@ -46,4 +54,16 @@ pub enum FlightError {
     /// The controller.
     #[error(transparent)]
     Control(#[from] ControlError),
+}
+
+impl FlightError {
+    /// Field of the case that asked for what failed.
+    pub fn field(&self) -> &str {
+        match self {
+            Self::Trim { source, .. } => source.field(),
+            Self::WakeDiverged { .. } => "inflow.model",
+            Self::Actuator { .. } => "actuator",
+            Self::OutOfRange { .. } | Self::Response { .. } | Self::Control(_) => "flight",
+        }
+    }
 }

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 /// Samples of a revolution, and harmonics of the motion that the rotor feels.
 const SAMPLES: usize = 128;
-const HARMONICS: u32 = 12;
+pub(crate) const HARMONICS: u32 = 12;
 /// Change of the bias for a mean flap angle, V/deg, once a revolution: a few revolutions to centre.
 const BIAS_VOLT_PER_DEG: f64 = 2.0;
 
@@ -23,7 +23,17 @@ pub struct FlapMarch<'a> {
     analysers: Vec<HarmonicAnalyser>,
     /// Cosine and sine of every controlled harmonic at every sample.
     waves: Vec<f64>,
-    clipped: usize,
+}
+
+/// What one flap did in a revolution.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlapTurn {
+    /// Its motion, deg: mean and harmonics up to 12 per rev.
+    pub flap_deg: HarmonicSeries,
+    /// Lowest and highest voltage.
+    pub volt: [f64; 2],
+    /// Part of the samples whose voltage was held at an end of the range, 0 to 1.
+    pub held_share: f64,
 }
 
 impl<'a> FlapMarch<'a> {
@@ -57,27 +67,28 @@ impl<'a> FlapMarch<'a> {
             bias_volt: vec![bias_volt; layout.flaps()],
             analysers: vec![analyser; layout.flaps()],
             waves,
-            clipped: 0,
         })
     }
 
-    /// Marches one revolution under a control vector, V, and gives the motion of every flap, deg. A voltage beyond the range
-    /// of the actuator is held at its end, as an amplifier does.
+    /// Marches one revolution of every flap under a control vector, V. A voltage beyond the range of the actuator is held at
+    /// its end, as an amplifier does.
     ///
     /// # Errors
     /// [`FlightError::Actuator`]; [`FlightError::Control`] for a control vector of another layout.
-    pub fn revolve(&mut self, control_volt: &[f64]) -> Result<Vec<HarmonicSeries>, FlightError> {
+    pub fn revolve(&mut self, control_volt: &[f64]) -> Result<Vec<FlapTurn>, FlightError> {
         self.layout.check(control_volt)?;
         let width = 2 * self.layout.harmonics().len();
         let range = self.model.range_volt;
-        let mut motions = Vec::with_capacity(self.memories.len());
+        let mut turns = Vec::with_capacity(self.memories.len());
         for (flap, own) in control_volt.chunks_exact(width).enumerate() {
             let mut motion = HarmonicSeries::zero(0);
+            let (mut extremes, mut held) = ([f64::INFINITY, f64::NEG_INFINITY], 0_usize);
             for waves in self.waves.chunks_exact(width) {
                 let swing: f64 = waves.iter().zip(own).map(|(wave, volt)| wave * volt).sum();
                 let wanted = self.bias_volt[flap] + swing;
                 let volt = wanted.clamp(range.lowest_volt(), range.highest_volt());
-                self.clipped += usize::from(volt.to_bits() != wanted.to_bits());
+                held += usize::from(volt.to_bits() != wanted.to_bits());
+                extremes = [extremes[0].min(volt), extremes[1].max(volt)];
                 let flap_deg = self
                     .stepper
                     .step(&mut self.memories[flap], volt, 0.0)
@@ -91,13 +102,9 @@ impl<'a> FlapMarch<'a> {
             }
             self.bias_volt[flap] = (self.bias_volt[flap] - BIAS_VOLT_PER_DEG * motion.mean)
                 .clamp(range.lowest_volt(), range.highest_volt());
-            motions.push(motion);
+            let held_share = held as f64 / SAMPLES as f64;
+            turns.push(FlapTurn { flap_deg: motion, volt: extremes, held_share });
         }
-        Ok(motions)
-    }
-
-    /// Samples of all flaps so far whose voltage was held at the end of the range.
-    pub fn clipped_samples(&self) -> usize {
-        self.clipped
+        Ok(turns)
     }
 }

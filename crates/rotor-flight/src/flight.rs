@@ -1,38 +1,30 @@
 //! The loop along a flight.
 
-use crate::{FlapMarch, FlightError, RotorPath};
-use hhc_control::{
-    ControlLayout, Cost, CycleController, EstimatorSettings, RelaxedController, RelaxedSettings,
-    TMatrix,
-};
+use crate::flaps::{FlapTurn, HARMONICS};
+use crate::pilot::Pilot;
+use crate::{FlapMarch, FlightError, FlightState, Guidance, RotorPath};
+use hhc_control::{ControlLayout, Cost, RelaxedSettings, TMatrix};
 use preisach_dyn::ActuatorModel;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-use rotor_base::{Harmonic, HarmonicSeries};
+use rayon::prelude::*;
+use rotor_base::HarmonicSeries;
 use rotor_study::HUB_OUTPUTS;
+use serde::Serialize;
 
 /// Revolutions that settle flaps and bias before T is identified.
 const SETTLED_REV: usize = 12;
 
-/// How T is known in flight.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Guidance {
-    /// T of the first advance ratio, held.
-    Fixed,
-    /// T of the knots, interpolated over the advance ratio.
-    Scheduled,
-    /// T of the first advance ratio, then estimated with Z0 and the noise.
-    Adaptive(EstimatorSettings),
-}
-
-/// A flap that stops at a time and stays at 0 deg.
+/// A flap that stops at a time and stays where it is stuck, on every blade.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlapFailure {
     /// Which one, from 0.
     pub flap: usize,
     /// When, s.
     pub time_s: f64,
+    /// Angle at which it stays, deg.
+    pub stuck_deg: f64,
     /// Whether the controller is told at the end of that cycle.
     pub is_told: bool,
 }
@@ -54,6 +46,8 @@ pub struct Flight<'a> {
     pub rotor_rev_hz: f64,
     /// Advance ratio against time (s), linear in between and held beyond the ends.
     pub advance_ratio: Vec<(f64, f64)>,
+    /// Part of the step of the thrust that is made, 0 to 1, against time (s), likewise; empty for none.
+    pub thrust_share: Vec<(f64, f64)>,
     /// Length of the flight, s.
     pub duration_s: f64,
     /// Standard deviation of the noise of a load in one revolution, over the root mean square of the loads without control
@@ -72,20 +66,44 @@ pub struct Flight<'a> {
 }
 
 /// One cycle of a flight: what its window has seen.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FlightPoint {
     /// End of the cycle, s.
     pub time_s: f64,
     /// Advance ratio there.
     pub advance_ratio: f64,
-    /// `J / J0`: of the loads without noise, over those without control at this advance ratio.
+    /// Part of the step of the thrust that is made there, 0 to 1.
+    pub thrust_share: f64,
+    /// `J` of the loads without noise.
+    pub cost: f64,
+    /// `J / J0`: over that without control in the same state.
     pub cost_ratio: f64,
-    /// Loads without noise, cosine and sine of six, nondimensional.
+    /// Loads without noise, cosine and sine of six at the blade number per rev, nondimensional.
     pub loads: [f64; HUB_OUTPUTS],
+    /// The same without control.
+    pub loads_at_rest: [f64; HUB_OUTPUTS],
     /// The control that acted, V.
     pub control_volt: Vec<f64>,
-    /// Amplitude of every flap at every controlled harmonic, deg, in the order of the layout.
-    pub flap_deg: Vec<f64>,
+    /// Whether a limit of an amplitude bound when it was chosen.
+    pub is_limited: bool,
+    /// Amplitudes of every flap at 1, 2 ... 12 per rev in the last revolution, deg.
+    pub flap_deg: Vec<Vec<f64>>,
+    /// Lowest and highest voltage of every flap in the cycle.
+    pub volt: Vec<[f64; 2]>,
+    /// Part of the samples of all flaps whose voltage was held at an end of the range, 0 to 1.
+    pub held_share: f64,
+    /// Mean power that the actuators of one blade give in the last revolution, none taken back, W.
+    pub power_watt: f64,
+}
+
+/// A value against time, linear in between and held beyond the ends; 0 of no points.
+fn at_time(points: &[(f64, f64)], time_s: f64) -> f64 {
+    let after = points.partition_point(|(time, _)| *time < time_s);
+    match (points.get(after.wrapping_sub(1)), points.get(after)) {
+        (Some((t0, from)), Some((t1, to))) => from + (to - from) * (time_s - t0) / (t1 - t0),
+        (Some((_, held)), None) | (None, Some((_, held))) => *held,
+        (None, None) => 0.0,
+    }
 }
 
 impl Flight<'_> {
@@ -108,117 +126,135 @@ impl Flight<'_> {
         FlapMarch::new(self.model, &self.layout, self.actuator_rev_hz, self.bias_volt)
     }
 
-    /// Advance ratio at a time.
-    fn advance_ratio_at(&self, time_s: f64) -> f64 {
-        let after = self.advance_ratio.partition_point(|(time, _)| *time < time_s);
-        match (self.advance_ratio.get(after.wrapping_sub(1)), self.advance_ratio.get(after)) {
-            (Some((t0, from)), Some((t1, to))) => from + (to - from) * (time_s - t0) / (t1 - t0),
-            (Some((_, held)), None) | (None, Some((_, held))) => *held,
-            (None, None) => 0.0,
+    /// Where the rotor is at a time, s.
+    pub fn state_at(&self, time_s: f64) -> FlightState {
+        FlightState {
+            advance_ratio: at_time(&self.advance_ratio, time_s),
+            thrust_share: at_time(&self.thrust_share, time_s),
         }
     }
 
-    /// T at an advance ratio about zero control, 1/V, by central differences of settled marches.
+    /// What the flaps do under a step of each control up and down, settled.
     ///
     /// # Errors
-    /// As [`fly`].
-    pub fn identify(&self, advance_ratio: f64) -> Result<TMatrix, FlightError> {
+    /// [`FlightError::Actuator`], [`FlightError::Control`].
+    pub(crate) fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
         let settled = |control: usize, step_volt: f64| {
             let mut control_volt = self.layout.zero();
             control_volt[control] = step_volt;
             let mut flaps = self.flaps()?;
-            let mut motion = flaps.revolve(&control_volt)?;
             for _ in 1..SETTLED_REV {
-                motion = flaps.revolve(&control_volt)?;
+                flaps.revolve(&control_volt)?;
             }
-            self.path.loads(advance_ratio, &motion)
+            Ok::<_, FlightError>(motions(&flaps.revolve(&control_volt)?))
         };
-        let column = |control: usize| -> Result<Vec<f64>, FlightError> {
-            let (up, down) =
-                (settled(control, self.step_volt)?, settled(control, -self.step_volt)?);
-            Ok(up.iter().zip(down).map(|(up, down)| (up - down) / (2.0 * self.step_volt)).collect())
+        let both =
+            |control| Ok([settled(control, self.step_volt)?, settled(control, -self.step_volt)?]);
+        (0..self.layout.len()).into_par_iter().map(both).collect()
+    }
+
+    /// T in a state about zero control, 1/V, by central differences over settled [`Self::steps`].
+    ///
+    /// # Errors
+    /// [`FlightError::Response`], [`FlightError::Control`].
+    pub(crate) fn t_in(
+        &self,
+        state: FlightState,
+        steps: &[[Vec<HarmonicSeries>; 2]],
+    ) -> Result<TMatrix, FlightError> {
+        let column = |[up, down]: &[Vec<HarmonicSeries>; 2]| {
+            let (up, down) = (self.path.loads(state, up)?, self.path.loads(state, down)?);
+            let slope = |(up, down): (&f64, f64)| (up - down) / (2.0 * self.step_volt);
+            Ok(up.iter().zip(down).map(slope).collect())
         };
-        let columns = (0..self.layout.len()).map(column).collect::<Result<Vec<_>, _>>()?;
+        let columns = steps.iter().map(column).collect::<Result<Vec<Vec<f64>>, FlightError>>()?;
         Ok(TMatrix::from_columns(&columns)?)
     }
+
+    /// T in a state about zero control, 1/V.
+    ///
+    /// # Errors
+    /// [`FlightError`] of actuators and rotor.
+    pub fn identify(&self, state: FlightState) -> Result<TMatrix, FlightError> {
+        self.t_in(state, &self.steps()?)
+    }
 }
 
-/// T as the loop knows it.
-enum Known {
-    Fixed(TMatrix),
-    Scheduled(Vec<Vec<Vec<f64>>>),
+fn motions(turns: &[FlapTurn]) -> Vec<HarmonicSeries> {
+    turns.iter().map(|turn| turn.flap_deg.clone()).collect()
 }
 
-impl Known {
-    fn at(&self, path: &RotorPath, advance_ratio: f64) -> Result<TMatrix, FlightError> {
-        let knots = match self {
-            Self::Fixed(t) => return Ok(t.clone()),
-            Self::Scheduled(knots) => knots,
+/// What flies: flaps and the noise of what is measured.
+struct Flown<'a> {
+    flight: &'a Flight<'a>,
+    flaps: FlapMarch<'a>,
+    weights: Vec<f64>,
+    /// Standard deviation of a load in one revolution.
+    noise: f64,
+    random: ChaCha8Rng,
+    revolutions: usize,
+}
+
+impl Flown<'_> {
+    fn time_s(&self) -> f64 {
+        self.revolutions as f64 / self.flight.rotor_rev_hz
+    }
+
+    fn cost(&self, loads: &[f64]) -> f64 {
+        Cost::of(loads, &self.weights, &[], 0.0).loads
+    }
+
+    /// One cycle under a control: what it was, and the loads that were measured.
+    fn cycle(&mut self, pilot: &Pilot) -> Result<(FlightPoint, [f64; HUB_OUTPUTS]), FlightError> {
+        let flight = self.flight;
+        let [settling, window] = flight.cycle_rev;
+        let (mut loads, mut measured) = ([0.0; HUB_OUTPUTS], [0.0; HUB_OUTPUTS]);
+        let mut volt = vec![[f64::INFINITY, f64::NEG_INFINITY]; flight.layout.flaps()];
+        let (mut motion, mut held_share) = (Vec::new(), 0.0);
+        for rev in 0..settling + window {
+            self.revolutions += 1;
+            let turns = self.flaps.revolve(pilot.control_volt())?;
+            for (turn, volt) in turns.iter().zip(&mut volt) {
+                *volt = [volt[0].min(turn.volt[0]), volt[1].max(turn.volt[1])];
+                held_share += turn.held_share / (turns.len() * (settling + window)) as f64;
+            }
+            motion = motions(&turns);
+            if let Some(failed) = flight.failure.filter(|failure| self.time_s() > failure.time_s)
+                && let Some(flap) = motion.get_mut(failed.flap)
+            {
+                *flap = HarmonicSeries { mean: failed.stuck_deg, ..HarmonicSeries::zero(0) };
+            }
+            if rev < settling {
+                continue;
+            }
+            let found = flight.path.loads(flight.state_at(self.time_s()), &motion)?;
+            for ((load, seen), found) in loads.iter_mut().zip(&mut measured).zip(found) {
+                let draw: f64 = StandardNormal.sample(&mut self.random);
+                *load += found / window as f64;
+                *seen += (found + self.noise * draw) / window as f64;
+            }
+        }
+        let (time_s, state) = (self.time_s(), flight.state_at(self.time_s()));
+        let (cost, loads_at_rest) = (self.cost(&loads), flight.path.loads(state, &[])?);
+        let amplitudes = |flap: &HarmonicSeries| {
+            (1..=HARMONICS as usize).map(|n| flap.harmonic(n).amplitude()).collect()
         };
-        let [(low, share), (high, rest)] = path.weights(advance_ratio);
-        let pairs = knots[low].iter().zip(&knots[high]);
-        let columns: Vec<Vec<f64>> = pairs
-            .map(|(a, b)| a.iter().zip(b).map(|(a, b)| share * a + rest * b).collect())
-            .collect();
-        Ok(TMatrix::from_columns(&columns)?)
-    }
-}
-
-/// The controller of a flight.
-enum Pilot {
-    Relaxed(Box<RelaxedController>, Known),
-    Adaptive(Box<CycleController>),
-}
-
-impl Pilot {
-    fn new(flight: &Flight<'_>, guidance: &Guidance, start: &[f64]) -> Result<Self, FlightError> {
-        let relaxed = RelaxedController::new(&flight.layout, start.len(), flight.settings.clone())?;
-        let first = || flight.identify(flight.advance_ratio_at(0.0));
-        Ok(match guidance {
-            Guidance::Fixed => Self::Relaxed(Box::new(relaxed), Known::Fixed(first()?)),
-            Guidance::Scheduled => {
-                let knots = flight.path.advance_ratios().into_iter();
-                let found = knots.map(|at| Ok(flight.identify(at)?.columns()));
-                let found = found.collect::<Result<Vec<_>, FlightError>>()?;
-                Self::Relaxed(Box::new(relaxed), Known::Scheduled(found))
-            }
-            Guidance::Adaptive(settings) => {
-                let cycle = CycleController::new(relaxed, settings, &first()?, start)?;
-                Self::Adaptive(Box::new(cycle))
-            }
-        })
-    }
-
-    fn control_volt(&self) -> &[f64] {
-        match self {
-            Self::Relaxed(relaxed, _) => relaxed.control_volt(),
-            Self::Adaptive(cycle) => cycle.controller().control_volt(),
-        }
-    }
-
-    fn step(
-        &mut self,
-        path: &RotorPath,
-        advance_ratio: f64,
-        outputs: &[f64],
-    ) -> Result<(), FlightError> {
-        match self {
-            Self::Relaxed(relaxed, known) => {
-                relaxed.step(&known.at(path, advance_ratio)?, outputs)?;
-            }
-            Self::Adaptive(cycle) => {
-                cycle.step(outputs)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn lose_flap(&mut self, flap: usize) -> Result<(), FlightError> {
-        match self {
-            Self::Relaxed(relaxed, _) => relaxed.set_flap_lost(flap, true)?,
-            Self::Adaptive(cycle) => cycle.lose_flap(flap)?,
-        }
-        Ok(())
+        let point = FlightPoint {
+            time_s,
+            advance_ratio: state.advance_ratio,
+            thrust_share: state.thrust_share,
+            cost,
+            cost_ratio: cost / self.cost(&loads_at_rest),
+            loads,
+            loads_at_rest,
+            control_volt: pilot.control_volt().to_vec(),
+            is_limited: pilot.is_limited(),
+            flap_deg: motion.iter().map(amplitudes).collect(),
+            volt,
+            held_share,
+            power_watt: flight.path.power_watt(state, &motion)?,
+        };
+        Ok((point, measured))
     }
 }
 
@@ -228,53 +264,22 @@ impl Pilot {
 /// [`FlightError`]: lengths and rates that are not positive, actuators, rotor, controller.
 pub fn fly(flight: &Flight<'_>, guidance: &Guidance) -> Result<Vec<FlightPoint>, FlightError> {
     flight.check()?;
-    let mut random = ChaCha8Rng::seed_from_u64(flight.seed);
-    let start = flight.path.loads(flight.advance_ratio_at(0.0), &[])?;
+    let start = flight.path.loads(flight.state_at(0.0), &[])?;
     let rms = (start.iter().map(|z| z * z).sum::<f64>() / start.len() as f64).sqrt();
     let mut pilot = Pilot::new(flight, guidance, &start)?;
-    let mut flaps = flight.flaps()?;
-    let weights = flight.settings.load_weights.diagonal(HUB_OUTPUTS)?;
-    let cost = |loads: &[f64]| Cost::of(loads, &weights, &[], 0.0).loads;
-    let [settling, window] = flight.cycle_rev;
-    let mut failure = flight.failure;
-    let (mut points, mut revolutions) = (Vec::new(), 0_usize);
+    let mut flown = Flown {
+        flight,
+        flaps: flight.flaps()?,
+        weights: flight.settings.load_weights.diagonal(HUB_OUTPUTS)?,
+        noise: flight.noise_share * rms,
+        random: ChaCha8Rng::seed_from_u64(flight.seed),
+        revolutions: 0,
+    };
+    let (mut points, mut failure) = (Vec::new(), flight.failure);
     loop {
-        let mut loads = [0.0; HUB_OUTPUTS];
-        let mut measured = [0.0; HUB_OUTPUTS];
-        let mut motion = Vec::new();
-        for rev in 0..settling + window {
-            revolutions += 1;
-            let time_s = revolutions as f64 / flight.rotor_rev_hz;
-            motion = flaps.revolve(pilot.control_volt())?;
-            if let Some(failed) = flight.failure.filter(|failure| time_s > failure.time_s)
-                && let Some(flap) = motion.get_mut(failed.flap)
-            {
-                *flap = HarmonicSeries::zero(0);
-            }
-            if rev < settling {
-                continue;
-            }
-            let found = flight.path.loads(flight.advance_ratio_at(time_s), &motion)?;
-            for ((load, seen), found) in loads.iter_mut().zip(&mut measured).zip(found) {
-                let draw: f64 = StandardNormal.sample(&mut random);
-                *load += found / window as f64;
-                *seen += (found + flight.noise_share * rms * draw) / window as f64;
-            }
-        }
-        let time_s = revolutions as f64 / flight.rotor_rev_hz;
-        let advance_ratio = flight.advance_ratio_at(time_s);
-        let harmonics = flight.layout.harmonics();
-        let amplitudes = motion.iter().flat_map(|flap| {
-            harmonics.iter().map(|&n| Harmonic::amplitude(&flap.harmonic(n as usize)))
-        });
-        points.push(FlightPoint {
-            time_s,
-            advance_ratio,
-            cost_ratio: cost(&loads) / cost(&flight.path.loads(advance_ratio, &[])?),
-            loads,
-            control_volt: pilot.control_volt().to_vec(),
-            flap_deg: amplitudes.collect(),
-        });
+        let (point, measured) = flown.cycle(&pilot)?;
+        let (time_s, advance_ratio) = (point.time_s, point.advance_ratio);
+        points.push(point);
         if time_s >= flight.duration_s {
             return Ok(points);
         }

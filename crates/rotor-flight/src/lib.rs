@@ -1,22 +1,27 @@
-//! Control in time along a flight whose advance ratio changes and whose flaps may fail.
+//! Control in time along a flight whose advance ratio and thrust change and whose flaps may fail.
 //!
-//! - *Rotor* ([`RotorPath`]): trims at knots of advance ratio; loads and their answer to the flaps are linearised there and
-//!   interpolated linearly in between. Every revolution is a steady state.
+//! - *Rotor* ([`RotorPath`]): trims at knots of advance ratio, and at a second thrust; loads and their answer to the flaps are
+//!   linearised there and interpolated linearly in between. Every revolution is a steady state.
 //! - *Flaps* ([`FlapMarch`]): every actuator is marched sample by sample through its hysteresis, all harmonics at once, its
 //!   bias slowly led so that the mean flap angle vanishes.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
+//! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
 //!
 //! Values in, values out: no file, no terminal.
 
+mod case_flight;
 mod error;
 mod flaps;
 mod flight;
 mod path;
+mod pilot;
 
+pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
-pub use flaps::FlapMarch;
-pub use flight::{FlapFailure, Flight, FlightPoint, Guidance, fly};
-pub use path::RotorPath;
+pub use flaps::{FlapMarch, FlapTurn};
+pub use flight::{FlapFailure, Flight, FlightPoint, fly};
+pub use path::{FlightState, RotorPath};
+pub use pilot::Guidance;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,19 +1,32 @@
-//! The rotor along a path of advance ratios.
+//! The rotor along a path of advance ratios, before and after a step of the thrust.
 
 use crate::FlightError;
+use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_study::case::Case;
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor};
+use rotor_study::{FlapAuthority, HUB_OUTPUTS, TrimmedRotor};
 
-/// Trims of a case at rising advance ratios.
+/// Where on its path a rotor is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct FlightState {
+    /// Advance ratio.
+    pub advance_ratio: f64,
+    /// Part of the step of the thrust that is made, 0 to 1.
+    pub thrust_share: f64,
+}
+
+/// Trims of a case at rising advance ratios, and at a second thrust if there is a step of it.
 ///
 /// ```text
-/// Z(mu, delta) = sum over the two knots about mu of  w_k ( Z0_k + G_k delta ),      w linear in mu, held beyond the ends
+/// Z(mu, s, delta) = sum over the knots about (mu, s) of  w_k ( Z0_k + G_k delta ),
+///                   w linear in mu and in the share s of the step, held beyond the ends
 /// ```
 /// Truth is this rotor, linear in the motion of the flaps.
 #[derive(Debug, Clone)]
 pub struct RotorPath {
-    knots: Vec<(f64, TrimmedRotor)>,
+    advance_ratios: Vec<f64>,
+    /// Before the step of the thrust; after it, if there is one.
+    rows: Vec<Vec<TrimmedRotor>>,
     blades: usize,
 }
 
@@ -21,24 +34,27 @@ impl RotorPath {
     /// Trims a case at advance ratios, each from the last.
     ///
     /// # Errors
-    /// [`FlightError::OutOfRange`] unless there is one and they rise; [`FlightError::Trim`], [`FlightError::Response`].
+    /// [`FlightError::OutOfRange`] unless there is one and they rise; [`FlightError::Trim`], [`FlightError::Response`],
+    /// [`FlightError::WakeDiverged`].
     pub fn new(case: &Case, advance_ratios: &[f64]) -> Result<Self, FlightError> {
         let rises = advance_ratios.windows(2).all(|pair| pair[0] < pair[1]);
         if advance_ratios.is_empty() || !rises {
             let (what, value) = ("number of advance ratios", advance_ratios.len() as f64);
             return Err(FlightError::OutOfRange { what, value, expected: "1 or more that rise" });
         }
-        let mut knots: Vec<(f64, TrimmedRotor)> = Vec::with_capacity(advance_ratios.len());
-        for &advance_ratio in advance_ratios {
-            let mut here = case.clone();
-            here.advance_ratio = advance_ratio;
-            let start = knots.last().map(|(_, rotor)| rotor.trim());
-            let rotor = TrimmedRotor::new(&here, start)
-                .map_err(|source| FlightError::Trim { advance_ratio, source: Box::new(source) })?;
-            rotor.authority().map_err(|source| FlightError::Response { advance_ratio, source })?;
-            knots.push((advance_ratio, rotor));
-        }
-        Ok(Self { knots, blades: case.rotor.blades })
+        let advance_ratios = advance_ratios.to_vec();
+        let rows = vec![trims(case, &advance_ratios)?];
+        Ok(Self { advance_ratios, rows, blades: case.rotor.blades })
+    }
+
+    /// The same with a step of the thrust to that of another case, trimmed at the same advance ratios.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_thrust_step(mut self, after: &Case) -> Result<Self, FlightError> {
+        self.rows.truncate(1);
+        self.rows.push(trims(after, &self.advance_ratios)?);
+        Ok(self)
     }
 
     /// Hub loads at the blade number per rev for motions of the flaps, deg; cosine and sine of six, nondimensional.
@@ -47,40 +63,89 @@ impl RotorPath {
     /// [`FlightError::Response`].
     pub fn loads(
         &self,
-        advance_ratio: f64,
+        state: FlightState,
         flaps_deg: &[HarmonicSeries],
     ) -> Result<[f64; HUB_OUTPUTS], FlightError> {
         let mut loads = [0.0; HUB_OUTPUTS];
-        for (index, weight) in self.weights(advance_ratio) {
-            let (at, rotor) = &self.knots[index];
-            let authority = rotor
-                .authority()
-                .map_err(|source| FlightError::Response { advance_ratio: *at, source })?;
-            let mut add = |part: [f64; HUB_OUTPUTS]| {
-                loads.iter_mut().zip(part).for_each(|(load, part)| *load += weight * part);
-            };
-            add(rotor.trim().rotor.hub.harmonic(self.blades));
-            for (flap, motion) in flaps_deg.iter().enumerate() {
-                add(authority.loads(flap, motion));
+        for (at, rotor, weight) in self.about(state) {
+            let authority = authority(at, rotor)?;
+            let own = rotor.trim().rotor.hub.harmonic(self.blades);
+            let moved = flaps_deg.iter().enumerate();
+            let parts = moved.map(|(flap, motion)| authority.loads(flap, motion));
+            for part in std::iter::once(own).chain(parts) {
+                for (load, part) in loads.iter_mut().zip(part) {
+                    *load += weight * part;
+                }
             }
         }
         Ok(loads)
     }
 
+    /// Mean power that the actuators of one blade give, none taken back, W; the mean of the knots by their weights.
+    ///
+    /// # Errors
+    /// [`FlightError::Response`].
+    pub fn power_watt(
+        &self,
+        state: FlightState,
+        flaps_deg: &[HarmonicSeries],
+    ) -> Result<f64, FlightError> {
+        let flaps_deg: Vec<&HarmonicSeries> = flaps_deg.iter().collect();
+        let each = self.about(state).map(|(advance_ratio, rotor, weight)| {
+            let found = rotor.linear_power_watt(&flaps_deg);
+            Ok(weight * found.map_err(|source| FlightError::Response { advance_ratio, source })?)
+        });
+        each.sum()
+    }
+
     /// Advance ratios of the knots.
-    pub fn advance_ratios(&self) -> Vec<f64> {
-        self.knots.iter().map(|(advance_ratio, _)| *advance_ratio).collect()
+    pub fn advance_ratios(&self) -> &[f64] {
+        &self.advance_ratios
+    }
+
+    /// The knots about a state: advance ratio, rotor and weight.
+    fn about(&self, state: FlightState) -> impl Iterator<Item = (f64, &TrimmedRotor, f64)> {
+        let share = if self.rows.len() > 1 { state.thrust_share } else { 0.0 };
+        let columns = self.weights(state.advance_ratio);
+        let rows = self.rows.iter().zip([1.0 - share, share]);
+        rows.flat_map(move |(row, of_row)| {
+            columns.map(|(k, of_column)| (self.advance_ratios[k], &row[k], of_row * of_column))
+        })
+        .filter(|(_, _, weight)| *weight > 0.0)
     }
 
     /// The two knots about an advance ratio with their weights.
     pub(crate) fn weights(&self, advance_ratio: f64) -> [(usize, f64); 2] {
-        let above = self.knots.partition_point(|(knot, _)| *knot < advance_ratio);
-        if above == 0 || above == self.knots.len() {
-            let end = above.min(self.knots.len() - 1);
+        let knots = &self.advance_ratios;
+        let above = knots.partition_point(|knot| *knot < advance_ratio);
+        if above == 0 || above == knots.len() {
+            let end = above.min(knots.len() - 1);
             return [(end, 1.0), (end, 0.0)];
         }
-        let (low, high) = (self.knots[above - 1].0, self.knots[above].0);
+        let (low, high) = (knots[above - 1], knots[above]);
         let share = (advance_ratio - low) / (high - low);
         [(above - 1, 1.0 - share), (above, share)]
     }
+}
+
+fn authority(advance_ratio: f64, rotor: &TrimmedRotor) -> Result<&FlapAuthority, FlightError> {
+    rotor.authority().map_err(|source| FlightError::Response { advance_ratio, source })
+}
+
+/// Trims at advance ratios, each from the last, all linearised.
+fn trims(case: &Case, advance_ratios: &[f64]) -> Result<Vec<TrimmedRotor>, FlightError> {
+    let mut rotors: Vec<TrimmedRotor> = Vec::with_capacity(advance_ratios.len());
+    for &advance_ratio in advance_ratios {
+        let here = Case { advance_ratio, ..case.clone() };
+        let start = rotors.last().map(TrimmedRotor::trim);
+        let rotor = TrimmedRotor::new(&here, start)
+            .map_err(|source| FlightError::Trim { advance_ratio, source: Box::new(source) })?;
+        if rotor.wake_diverged() {
+            return Err(FlightError::WakeDiverged { advance_ratio });
+        }
+        rotors.push(rotor);
+    }
+    let each = rotors.par_iter().zip(advance_ratios);
+    each.map(|(rotor, &at)| authority(at, rotor).map(|_| ())).collect::<Result<Vec<()>, _>>()?;
+    Ok(rotors)
 }

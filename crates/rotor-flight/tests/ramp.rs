@@ -1,35 +1,16 @@
 //! A ramp of the advance ratio, noise, and a flap that fails, with an actuator that has memory and lag.
 #![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
+mod common;
+
+use common::actuator;
 use hhc_control::{ControlLayout, EstimatorSettings, RelaxedSettings};
-use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, PlayMap,
-    PreisachGrid, RateForm, TimeOrder, VoltageRange,
-};
+use preisach_dyn::ActuatorModel;
 use rotor_flight::{FlapFailure, Flight, FlightPoint, Guidance, RotorPath, fly};
 use rotor_study::case::Case;
 
 const SEEDS: u64 = 20;
 const KNOTS: [f64; 4] = [0.15, 0.20, 0.25, 0.30];
-
-/// The dynamic Preisach operator of eight levels.
-fn actuator() -> ActuatorModel {
-    let grid = PreisachGrid::new(VoltageRange::amplified_stack(), 8).unwrap();
-    let rises: Vec<Vec<f64>> =
-        (0..8).map(|j| vec![if j == 0 { 2.0 } else { 0.15 }; 8 - j]).collect();
-    let law = DynamicPreisach::new(DynamicParameters {
-        grid,
-        g0_deg: PlayMap::from_rises(&grid, 0.0, &rises).unwrap(),
-        g1_s: PlayMap::constant(&grid, -0.024),
-        g2_s2_per_deg: PlayMap::constant(&grid, 0.0),
-        form: RateForm::WellPosed,
-        unfolded_rate_deg_s: 500.0,
-        time_order: TimeOrder::Second,
-    })
-    .unwrap();
-    let calibration = Calibration { deg_per_um: 0.04, zero_um: 0.0 };
-    ActuatorModel::new(ActuatorLaw::DynamicPreisach(law), grid.range(), calibration)
-}
 
 fn flight<'a>(path: &'a RotorPath, model: &'a ActuatorModel) -> Flight<'a> {
     let layout = ControlLayout::new(2, vec![3]).unwrap();
@@ -47,6 +28,7 @@ fn flight<'a>(path: &'a RotorPath, model: &'a ActuatorModel) -> Flight<'a> {
         bias_volt: 65.0,
         rotor_rev_hz: 383.0 / 60.0,
         advance_ratio: vec![(0.0, 0.15), (10.0, 0.15), (30.0, 0.30)],
+        thrust_share: vec![],
         duration_s: 40.0,
         // 30 dB
         noise_share: 0.0316,
@@ -112,7 +94,7 @@ fn a_failure_is_taken_up() {
     let adaptive = Guidance::Adaptive(EstimatorSettings::in_flight(70.0));
     for flap in [0, 1] {
         let failing = |time_s: f64, is_told| {
-            let failure = Some(FlapFailure { flap, time_s, is_told });
+            let failure = Some(FlapFailure { flap, time_s, stuck_deg: 0.0, is_told });
             fly(&Flight { failure, ..flight.clone() }, &adaptive).unwrap()
         };
         let alone = mean(&failing(0.0, true), 30.0, 41.0);

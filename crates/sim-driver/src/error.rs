@@ -8,6 +8,7 @@ use flap_aero::AeroError;
 use measured_data::DataError;
 use preisach_dyn::PreisachError;
 use rotor_fem::FemError;
+use rotor_flight::FlightError;
 use rotor_response::ResponseError;
 use rotor_study::StudyError;
 use std::path::PathBuf;
@@ -43,6 +44,14 @@ pub enum SimError {
         place: Place,
         /// What went wrong.
         source: StudyError,
+    },
+    /// A flight in time.
+    #[error("{place}: {source}")]
+    Flight {
+        /// Field of the case that asked for it.
+        place: Place,
+        /// What went wrong.
+        source: Box<FlightError>,
     },
     /// A free wake that diverged or carries no thrust: what is given is no solution.
     #[error(
@@ -147,6 +156,7 @@ impl SimError {
             Self::Bench(source) => bench_family(source),
             Self::Data(_) | Self::Sweep(_) | Self::Section(_) => Family::RejectedInput,
             Self::Study { source, .. } => study_family(source),
+            Self::Flight { source, .. } => flight_family(source),
         }
     }
 
@@ -204,6 +214,16 @@ fn study_family(error: &StudyError) -> Family {
         StudyError::Trim { source, .. } | StudyError::SoftPitch { source, .. } => {
             trim_family(source)
         }
+        _ => Family::NumericalFailure,
+    }
+}
+
+fn flight_family(error: &FlightError) -> Family {
+    match error {
+        FlightError::OutOfRange { .. } => Family::RejectedInput,
+        FlightError::Trim { source, .. } => study_family(source),
+        FlightError::Response { source, .. } => response_family(source),
+        FlightError::Actuator { source, .. } => actuator_family(source),
         _ => Family::NumericalFailure,
     }
 }

@@ -12,6 +12,7 @@
 //! | the actuators of a case, their use; identified and stored by [`bench_study`] | [`actuator`], [`actuator_use`] |
 //! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
+//! | a case flown in time | [`flight`] |
 //! | two results side by side | [`compare`] |
 //! | the HTML report | [`report`] |
 //! | `hhc` | [`cli`] |
@@ -26,6 +27,7 @@ pub mod compare;
 pub mod diagnose;
 mod error;
 pub mod files;
+pub mod flight;
 pub mod import;
 pub mod output;
 pub mod print;

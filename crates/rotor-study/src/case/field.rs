@@ -188,6 +188,7 @@ values!(
     rotor_wake::WakeSymmetry,
     // checked by rules
     Vec<f64>,
+    Vec<usize>,
     Vec<Vec<usize>>,
     (f64, f64),
 );
@@ -229,6 +230,10 @@ impl<T: Value> Value for Option<T> {
 
     fn fault(&self, field: &Field) -> Option<CaseFault> {
         self.as_ref().and_then(|value| value.fault(field))
+    }
+
+    fn inside<V: Visitor>(&self, visitor: &mut V) -> bool {
+        self.as_ref().is_some_and(|value| value.inside(visitor))
     }
 }
 

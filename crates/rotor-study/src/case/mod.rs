@@ -8,7 +8,7 @@
 //! | idea | module |
 //! |---|---|
 //! | a field stated once: name, default, range, unit, remedy, meaning | `field` |
-//! | sections of a case | `sections`, `blade`, `wake`, `control`, `measured` |
+//! | sections of a case | `sections`, `blade`, `wake`, `control`, `flight`, `measured` |
 //! | rules between fields, and [`Case::check`] | `rules`, `rules_blade` |
 //! | what is wrong with a value, and where | `fault` |
 //! | values into the models of the crates below | `models` |
@@ -19,6 +19,7 @@ mod checker;
 mod control;
 mod fault;
 mod field;
+mod flight;
 mod measured;
 mod models;
 mod plausibility;
@@ -38,6 +39,7 @@ pub use control::{
 };
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
+pub use flight::{FailedFlap, FailureNotice, FlightController, FlightValues, ThrustStep};
 pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection, UncertainField};
 pub use plausibility::PlausibilityWarning;
 pub use sections::{

@@ -4,8 +4,8 @@ use super::checker::Checker;
 use super::rules_blade::check_blade;
 use super::{
     ActuatorChoice, AirfoilStation, AttachedFlowModel, Case, CaseFault, CaseFaults,
-    CompressibilityChoice, ControlActuator, ControllerChoice, EffortChoice, FreeWakeValues,
-    InflowChoice, StrokeChoice, TInflowChoice, WakeMethod, WakeSymmetry,
+    CompressibilityChoice, ControlActuator, ControllerChoice, EffortChoice, FlightValues,
+    FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice, WakeMethod, WakeSymmetry,
 };
 
 // rules between fields
@@ -20,6 +20,12 @@ const NO_LOAD_WEIGHTED: &str =
     "every load weight is 0, so there is nothing to reduce; 1 is the paper's identity weight";
 const NEEDS_FLAPS: &str =
     "the blade has no flap to control with; give flaps, or write harmonics: []";
+const FLIES_NONE_OR_TWICE: &str = "give each controller once, at least one of them: controllers: [Fixed, Scheduled, Adaptive]";
+const FLIES_WITHOUT_FLAPS: &str =
+    "the blade has no flap to control with; give flaps, or leave the flight out";
+const NEEDS_THRUST: &str = "controls that are given have no thrust to step; trim: Propulsive or WindTunnel, or leave thrust_step out";
+/// Highest harmonic of the flaps that the linearised rotor of a flight knows, per rev.
+const HIGHEST_FLOWN: usize = 10;
 
 impl Case {
     /// Checks every value and the rules between them.
@@ -37,6 +43,9 @@ impl Case {
         check_harmonics(&mut check, self);
         check_control(&mut check, self);
         check_response(&mut check, self);
+        if let Some(flight) = &self.flight {
+            check_flight(&mut check, self, flight);
+        }
         check.finish()
     }
 }
@@ -183,20 +192,51 @@ fn check_voltage(check: &mut Checker, case: &Case) {
 
 fn check_harmonics(check: &mut Checker, case: &Case) {
     for (i, set) in case.control.harmonics.iter().enumerate() {
-        let list = format!("control.harmonics[{i}]");
-        if set.is_empty() {
-            check.broken(&list, "is empty; give at least one harmonic");
+        check_set(check, &format!("control.harmonics[{i}]"), set, 12);
+    }
+}
+
+/// Harmonics that are controlled together, up to a highest one, each once.
+fn check_set(check: &mut Checker, list: &str, set: &[usize], highest: usize) {
+    if set.is_empty() {
+        check.broken(list, "is empty; give at least one harmonic");
+    }
+    for (j, &harmonic) in set.iter().enumerate() {
+        let field = format!("{list}[{j}]");
+        let remedy = "the paper controls 2, 3, 4 (and 5) per rev";
+        check.count(&field, harmonic, (1, highest), remedy);
+        if set[..j].contains(&harmonic) {
+            let message =
+                format!("`{harmonic}` is used already at {list}; give every harmonic of a set once");
+            check.broken(&field, message);
         }
-        for (j, &harmonic) in set.iter().enumerate() {
-            let field = format!("{list}[{j}]");
-            check.count(&field, harmonic, (1, 12), "the paper controls 2, 3, 4 (and 5) per rev");
-            if set[..j].contains(&harmonic) {
-                let message = format!(
-                    "`{harmonic}` is used already at {list}; give every harmonic of a set once"
-                );
-                check.broken(&field, message);
-            }
+    }
+}
+
+/// A flight whose flaps, controllers and times are there.
+fn check_flight(check: &mut Checker, case: &Case, flight: &FlightValues) {
+    check_set(check, "flight.harmonics", &flight.harmonics, HIGHEST_FLOWN);
+    let controllers = &flight.controllers;
+    let is_twice = |i: usize| controllers[..i].contains(&controllers[i]);
+    if controllers.is_empty() || (1..controllers.len()).any(is_twice) {
+        check.broken("flight.controllers", FLIES_NONE_OR_TWICE);
+    }
+    if case.flaps.is_empty() {
+        check.broken("flight", FLIES_WITHOUT_FLAPS);
+    }
+    let times = (0.0, flight.duration_s);
+    let remedy = "within the flight, whose length is flight.duration_s";
+    if let Some(step) = &flight.thrust_step {
+        check.within("flight.thrust_step.at_s", step.at_s, times, "s", remedy);
+        if case.trim.ct_sigma().is_none() {
+            check.broken("flight.thrust_step", NEEDS_THRUST);
         }
+    }
+    if let Some(failed) = &flight.failed_flap {
+        check.within("flight.failed_flap.at_s", failed.at_s, times, "s", remedy);
+        let remedy = "flaps are counted from the root";
+        let flaps = (1, case.flaps.len().max(1));
+        check.count("flight.failed_flap.flap", failed.flap, flaps, remedy);
     }
 }
 

@@ -5,8 +5,8 @@
 
 use super::field::{is_default, section, values};
 use super::{
-    ActuatorValues, ControlValues, FlapValues, FreeWakeValues, MeasuredFiles, RotorValues,
-    TrimValues, UncertainField,
+    ActuatorValues, ControlValues, FlapValues, FlightValues, FreeWakeValues, MeasuredFiles,
+    RotorValues, TrimValues, UncertainField,
 };
 use flap_aero::{AirfoilSpan, AttachedFlowModel, StallAirfoil};
 use rotor_base::RotorScales;
@@ -50,6 +50,9 @@ section! {
         pub response: ResponseValues = ResponseValues::default(), Any, "", "";
         /// Tolerances of the solvers.
         pub tolerances: ToleranceValues = ToleranceValues::default(), Any, "", "";
+        /// A flight in time, for `hhc fly`; `()` is one with every default.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub flight: Option<FlightValues> = None, Any, "", "";
         /// Measured data of the flight.
         #[serde(skip_serializing_if = "is_default")]
         pub measured: MeasuredFiles = MeasuredFiles::default(), Any, "", "";
@@ -69,6 +72,12 @@ impl Case {
     /// Hover tip Mach number `Omega R / a`.
     pub fn tip_mach(&self) -> f64 {
         self.scales().tip_speed_m_s() / self.aerodynamics.speed_of_sound_m_s
+    }
+
+    /// Step of the T matrix, V.
+    pub fn t_step_volt(&self) -> f64 {
+        let control = &self.control;
+        control.t_step_deg * control.amplitude_volt / self.actuator.ideal_amplitude_deg
     }
 
     /// Frequency of a harmonic in the actuator's time, Hz: harmonic x `bench_rev_hz`.

@@ -17,7 +17,7 @@ pub use robustness::{
 pub use root_pitch::{Actuation, MotionHarmonic, RootPitchComparison, compare_root_pitch};
 pub(crate) use run::ideal_control;
 pub use run::{control_all, control_set};
-pub use set::control_status;
+pub use set::{control_status, least_effort};
 pub use study::ControlStudy;
 
 /// An actuator with memory and lag: the dynamic Preisach operator of eight levels.

@@ -83,8 +83,7 @@ impl ControlSet<'_> {
 
     /// The step of the T matrix, V.
     pub(super) fn step_volt(&self) -> f64 {
-        let control = &self.case.control;
-        control.t_step_deg * control.amplitude_volt / self.case.actuator.ideal_amplitude_deg
+        self.case.t_step_volt()
     }
 
     /// The same for every control of a plant.
@@ -226,7 +225,7 @@ const LEAST_EFFORT: f64 = 1e-8;
 
 /// Control weight of a cone program, 1/V^2: with more controls than loads the optimum is one of many, and the least
 /// voltage is taken.
-pub(super) fn least_effort(law: &FeedbackLaw) -> f64 {
+pub fn least_effort(law: &FeedbackLaw) -> f64 {
     let scale = law.singular_values().first().map_or(0.0, |s| s * s);
     if law.has_surplus_controls() { LEAST_EFFORT * scale } else { 0.0 }
 }

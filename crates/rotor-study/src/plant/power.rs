@@ -1,14 +1,12 @@
 //! The power of the actuators in the plant: its limit and its weight.
 
-use crate::flaps::{FlapMotion, FullScale, HingePower, PlantError};
+use crate::flaps::{FlapMotion, FullScale, PlantError};
 use crate::plant::outputs::PowerOutputs;
 use crate::plant::pair_power::watt_per_deg2;
 use crate::plant::rotor_plant::{PlantPower, RotorPlant};
-use crate::series::added;
 use hhc_control::PowerLimit;
 use nalgebra::{DMatrix, DVector};
 use rotor_base::HarmonicSeries;
-use rotor_response::HingeMoment;
 
 /// Part of full scale from which on the motion of a pair is taken for what its power is worked out from: far
 /// below any control, so that the form of the power does not jump on the way.
@@ -56,23 +54,6 @@ impl RotorPlant {
         PowerOutputs::new(pairs.map(gain).collect())
     }
 
-    /// Mean power that the actuators of one blade give in the linearised rotor, W.
-    fn linear_power_watt(&self, flaps: &[FlapMotion]) -> Result<f64, PlantError> {
-        let authority = self.rotor.authority()?;
-        let mut moments: Vec<HarmonicSeries> =
-            self.rotor.trim().rotor.hinge.iter().map(HingeMoment::total).collect();
-        for (flap, motion) in flaps.iter().enumerate() {
-            for (sum, part) in moments.iter_mut().zip(authority.hinge(flap, &motion.flap_deg)) {
-                *sum = added(sum, &part, 1.0);
-            }
-        }
-        let each = moments.into_iter().zip(flaps).map(|(aerodynamic, motion)| {
-            let hinge = HingeMoment { aerodynamic, inertial: HarmonicSeries::zero(0) };
-            HingePower::new(&hinge, &motion.flap_deg, self.rotor.scales()).given_watt
-        });
-        Ok(each.sum())
-    }
-
     /// The limit of the power as it stands at a control vector and the flap motion it makes.
     pub(crate) fn power_limit(
         &self,
@@ -97,7 +78,12 @@ impl RotorPlant {
             moves |= known;
         }
         // what cross terms, harmonics of the actuator and the moment at rest add, as it is here
-        let scale = if moves && model > 0.0 { self.linear_power_watt(flaps)? / model } else { 1.0 };
+        let motions: Vec<&HarmonicSeries> = flaps.iter().map(|motion| &motion.flap_deg).collect();
+        let scale = if moves && model > 0.0 {
+            self.rotor.linear_power_watt(&motions)? / model
+        } else {
+            1.0
+        };
         let diagonal = DVector::from_iterator(
             control_volt.len(),
             form.iter().flat_map(|watt| [scale * watt, scale * watt]),

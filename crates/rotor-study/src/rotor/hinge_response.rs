@@ -1,9 +1,9 @@
 //! What the flap motions of a trimmed rotor do to its hinge moments.
 
-use crate::flaps::HingeCoupling;
+use crate::flaps::{HingeCoupling, HingePower};
 use crate::rotor::once::found;
 use crate::rotor::trimmed::TrimmedRotor;
-use crate::series::{coefficients, only, scaled, weighted};
+use crate::series::{added, coefficients, only, scaled, weighted};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
@@ -47,6 +47,27 @@ impl TrimmedRotor {
             })
             .collect::<Result<Vec<DVector<f64>>, ResponseError>>()?;
         Ok(DMatrix::from_columns(&columns))
+    }
+
+    /// Mean power that the actuators of one blade give for motions of the flaps (deg), none taken back, W: of the
+    /// linearised rotor.
+    ///
+    /// # Errors
+    /// The errors of the linearised response.
+    pub fn linear_power_watt(&self, flaps_deg: &[&HarmonicSeries]) -> Result<f64, ResponseError> {
+        let authority = self.authority()?;
+        let mut moments: Vec<HarmonicSeries> =
+            self.trim.rotor.hinge.iter().map(HingeMoment::total).collect();
+        for (flap, motion) in flaps_deg.iter().enumerate() {
+            for (sum, part) in moments.iter_mut().zip(authority.hinge(flap, motion)) {
+                *sum = added(sum, &part, 1.0);
+            }
+        }
+        let each = moments.into_iter().zip(flaps_deg).map(|(aerodynamic, motion)| {
+            let hinge = HingeMoment { aerodynamic, inertial: HarmonicSeries::zero(0) };
+            HingePower::new(&hinge, motion, self.scales()).given_watt
+        });
+        Ok(each.sum())
     }
 
     /// Hinge moment of every flap in a response, N m, positive in the sense of the angle.

@@ -7,10 +7,10 @@ use crate::output::wrap;
 use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
-    Case, ControlValues, DissimilarBlade, EffectivenessValues, Field, FlapValues, FreeWakeValues,
+    Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapValues, FlightValues, FreeWakeValues,
     HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile, MeasuredFiles, MeasuredSection,
     ModeNumbers, PitchHarmonic, PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range,
-    ResponseValues, RotorValues, Section, StructureValues, ToleranceValues, UncertainField, Value,
+    ResponseValues, RotorValues, Section, StructureValues, ThrustStep, ToleranceValues, UncertainField, Value,
     Visitor, WindTunnelTrim,
 };
 use serde::Serialize;
@@ -57,6 +57,9 @@ fn tables() -> String {
         table::<LoadWeights>("control.load_weights"),
         table::<ResponseValues>("response"),
         table::<ToleranceValues>("tolerances"),
+        table::<FlightValues>("flight"),
+        table::<ThrustStep>("flight.thrust_step"),
+        table::<FailedFlap>("flight.failed_flap"),
         table::<MeasuredFiles>("measured"),
         table::<MeasuredSection>("measured.airloads"),
         table::<MeasuredFile>("measured.tip, measured.vortex_centres"),
@@ -195,6 +198,7 @@ fn one_line<T: Serialize>(value: &T) -> String {
 pub fn starting_case() -> Result<String, Problems> {
     let mut case = shipped_case(PAPER_CASE)?.case;
     case.actuator.model = ActuatorChoice::Bench(BenchFolder::default());
+    case.flight = Some(FlightValues::default());
     let mut text = Starting { text: HEADER.to_owned(), indent: 0, is_commented: true };
     text.body("(", &case, ")\n");
     Ok(text.text)
@@ -310,6 +314,7 @@ mod tests {
         let read = read_case(&source, &Folder::Disk("no/such/folder".into())).unwrap();
         let mut paper = shipped_case(PAPER_CASE).unwrap().case;
         paper.actuator.model = ActuatorChoice::Bench(BenchFolder::default());
+        paper.flight = Some(FlightValues::default());
         assert_eq!(read.case, paper);
         for key in
             ["horizontal_tail", "gyration_fraction", "twist_angle", "power_limit_W", "range_V"]

@@ -57,6 +57,8 @@ pub enum Command {
     Wake(WakeArgs),
     /// Flaps against pitch at the root of the blades, at equal reduction of vibration.
     RootPitch(RootPitchArgs),
+    /// Fly a case in time: speed, thrust and a flap change, controllers side by side.
+    Fly(FlyArgs),
     /// Responses of a section with a trailing-edge flap: harmonic, step, ramp, loop, polar.
     Section(SectionArgs),
     /// Many variations of a case: axes over any field, resumable, in parts, on a cluster.
@@ -170,6 +172,23 @@ pub struct RunArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+}
+
+/// `hhc fly`.
+#[derive(Debug, Clone, Args)]
+pub struct FlyArgs {
+    /// Case file with a section `flight`.
+    #[arg(value_name = "CASE.ron")]
+    pub case: PathBuf,
+    /// Folder for flight.csv and flight.html; out/ and the name of the case if left out.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Inflow model instead of the case's.
+    #[arg(long, value_enum, visible_alias = "wake")]
+    pub inflow: Option<InflowOverride>,
+    /// Tables for people or JSON for programs.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
 }
 
 /// `hhc compare`.

@@ -5,6 +5,7 @@ mod case_runner;
 mod compare;
 mod data;
 mod diagnose;
+mod fly;
 mod identify;
 mod rotor;
 mod run;
@@ -12,7 +13,7 @@ mod section;
 mod sweep;
 
 pub use args::{
-    Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, IdentifyArgs, ImportArgs, InflowOverride,
+    Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, FlyArgs, IdentifyArgs, ImportArgs, InflowOverride,
     ModesArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
@@ -63,6 +64,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
     match &cli.command {
         None => run::study(&cli.study),
         Some(Command::Run(args)) => run::run(args),
+        Some(Command::Fly(args)) => fly::fly(args),
         Some(Command::Compare(args)) => compare::compare(args),
         Some(Command::Identify(args)) => identify::identify(args),
         Some(Command::Predict(args)) => identify::predict(args),
@@ -110,6 +112,12 @@ fn check_advance_ratio(problems: &mut Problems, mu: f64) {
 /// The case of a file; the paper's if none is given.
 fn case_or_paper(path: Option<&PathBuf>) -> Result<LoadedCase, SimError> {
     Ok(path.map_or_else(|| shipped_case(PAPER_CASE), |path| load_case(path))?)
+}
+
+/// Folder of the results of a case file, if none is given: `out/` and its name.
+fn folder_or(given: Option<&PathBuf>, case: &Path) -> PathBuf {
+    let stem = case.file_stem().map(PathBuf::from).unwrap_or_default();
+    given.cloned().unwrap_or_else(|| Path::new("out").join(stem))
 }
 
 /// Writes named texts into a folder.

@@ -1,7 +1,7 @@
 //! Bare `hhc`, `hhc run` and `hhc report`: a case run, stored and shown.
 
 use super::args::{RunArgs, StudyArgs};
-use super::{check_advance_ratio, overridden, warn};
+use super::{check_advance_ratio, folder_or, overridden, warn};
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
@@ -22,7 +22,7 @@ use crate::sweep::{
 };
 use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use trim::{TrimSolution, WakeTrim};
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
@@ -33,10 +33,7 @@ pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
 
 pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);
-    let out = args.out.clone().unwrap_or_else(|| {
-        let stem = args.case.file_stem().map(PathBuf::from).unwrap_or_default();
-        Path::new("out").join(stem)
-    });
+    let out = folder_or(args.out.as_ref(), &args.case);
     let sensitivity = args.sensitivity.then_some(Assumptions::WithWake);
     let scope = Scope { sensitivity, robustness: args.robustness };
     let format = args.format.form();

@@ -47,6 +47,7 @@ shipped![
     "fixtures/cases/controllers_mu030.ron",
     "fixtures/cases/crosscheck_s1.ron",
     "fixtures/cases/crosscheck_s2.ron",
+    "fixtures/cases/flight_ramp.ron",
     "fixtures/cases/hart_ii_bl.ron",
     "fixtures/cases/hart_ii_mn.ron",
     "fixtures/cases/helinovi_climb.ron",

@@ -1,0 +1,220 @@
+//! The flight that a case describes.
+
+use crate::{
+    FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath, fly,
+};
+use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
+use preisach_dyn::{ActuatorModel, VoltageRange};
+use rayon::prelude::*;
+use rotor_study::case::{Case, FailureNotice, FlightController, FlightValues, TrimValues};
+use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
+use serde::Serialize;
+
+/// What an adaptive controller takes T0 for in flight: its error, and its change over full scale, as parts of itself.
+const T0_UNCERTAINTY: f64 = 0.1;
+const T_DRIFT: f64 = 0.05;
+/// Cycles that count as the end of a flight, and how far `J / J0` may lie from their mean when it has settled.
+const END_CYCLES: usize = 10;
+const SETTLED_WITHIN: f64 = 0.05;
+
+/// The flights of a case: one rotor and one schedule under several controllers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlownCase {
+    /// Hub loads without control at the start, cosine and sine of six, nondimensional.
+    pub start: [f64; HUB_OUTPUTS],
+    /// A flight of each controller, in the order of the case.
+    pub flights: Vec<FlownController>,
+}
+
+/// A controller's flight.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlownController {
+    /// Its name.
+    pub controller: &'static str,
+    /// What it amounts to.
+    pub summary: FlightSummary,
+    /// A point for every cycle.
+    pub points: Vec<FlightPoint>,
+}
+
+/// What a flight amounts to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlightSummary {
+    /// Mean of `J / J0` over all cycles.
+    pub mean_cost_ratio: f64,
+    /// The largest, of the cycles with control: the first has none yet.
+    pub worst_cost_ratio: f64,
+    /// End of that cycle, s.
+    pub worst_at_s: f64,
+    /// Mean over the last ten cycles.
+    pub end_cost_ratio: f64,
+    /// Time from the last disturbance of the schedule until `J / J0` stays within 0.05 of the mean of the last ten cycles, s;
+    /// none if it does not before these.
+    pub settles_in_s: Option<f64>,
+    /// Part of the cycles whose control a limit of an amplitude bound, 0 to 1.
+    pub limited_share: f64,
+    /// Part of the samples whose voltage was held at an end of the range, 0 to 1.
+    pub held_share: f64,
+    /// Mean power that the actuators of one blade give, W.
+    pub power_watt: f64,
+}
+
+impl FlightSummary {
+    /// Of the points of a flight, one at least, whose last disturbance ends at a time.
+    fn of(points: &[FlightPoint], disturbed_s: f64) -> Self {
+        let count = points.len() as f64;
+        let mean = |of: &dyn Fn(&FlightPoint) -> f64| points.iter().map(of).sum::<f64>() / count;
+        let last = &points[points.len().saturating_sub(END_CYCLES)..];
+        let end = last.iter().map(|p| p.cost_ratio).sum::<f64>() / last.len() as f64;
+        let is_off = |p: &FlightPoint| (p.cost_ratio - end).abs() > SETTLED_WITHIN;
+        let settled = points.iter().rposition(is_off).map_or(0, |k| k + 1);
+        let settles_in_s = (settled + last.len() <= points.len())
+            .then(|| (points[settled].time_s - disturbed_s).max(0.0));
+        let (worst_cost_ratio, worst_at_s) = points
+            .iter()
+            .skip(1)
+            .map(|p| (p.cost_ratio, p.time_s))
+            .fold((0.0, 0.0), |worst, own| if own.0 > worst.0 { own } else { worst });
+        Self {
+            mean_cost_ratio: mean(&|p| p.cost_ratio),
+            worst_cost_ratio,
+            worst_at_s,
+            end_cost_ratio: end,
+            settles_in_s,
+            limited_share: mean(&|p| f64::from(u8::from(p.is_limited))),
+            held_share: mean(&|p| p.held_share),
+            power_watt: mean(&|p| p.power_watt),
+        }
+    }
+}
+
+/// Flies a validated case with a flight, all its controllers; `done` is called after the trims and after each flight.
+///
+/// # Errors
+/// [`FlightError`]: trims, the linearised rotor, actuators, controllers; a range of voltages that is none.
+pub fn fly_case(
+    case: &Case,
+    values: &FlightValues,
+    model: &ActuatorModel,
+    done: &(dyn Fn() + Sync),
+) -> Result<FlownCase, FlightError> {
+    let path = path_of(case, values)?;
+    done();
+    let (low, high) = case.actuator.range_volt;
+    let range_volt = VoltageRange::new(low, high)
+        .map_err(|source| FlightError::Actuator { flap: 0, source })?;
+    let model = ActuatorModel { range_volt, ..model.clone() };
+    let flight = flight_of(case, values, &path, &model)?;
+    let start = path.loads(flight.state_at(0.0), &[])?;
+    let disturbed_s = last_disturbance_s(values);
+    let one = |&controller: &FlightController| {
+        let points = fly(&flight, &guidance_of(controller, case, values))?;
+        done();
+        let summary = FlightSummary::of(&points, disturbed_s);
+        Ok(FlownController { controller: controller.name(), summary, points })
+    };
+    let flights = values.controllers.par_iter().map(one).collect::<Result<_, FlightError>>()?;
+    Ok(FlownCase { start, flights })
+}
+
+/// The rotor along the schedule of a flight.
+fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, FlightError> {
+    let (from, to) = (values.start_advance_ratio, values.end_advance_ratio);
+    let (low, span) = (from.min(to), (to - from).abs());
+    let knots = if values.is_level() { 1 } else { values.knots };
+    let place = |k: usize| low + span * k as f64 / (knots - 1).max(1) as f64;
+    let path = RotorPath::new(case, &(0..knots).map(place).collect::<Vec<f64>>())?;
+    match &values.thrust_step {
+        None => Ok(path),
+        Some(step) => path.with_thrust_step(&at_thrust(case, step.ratio)),
+    }
+}
+
+/// A case whose thrust or weight is multiplied by a ratio; controls that are given stay.
+fn at_thrust(case: &Case, ratio: f64) -> Case {
+    let mut after = case.clone();
+    match &mut after.trim {
+        TrimValues::Propulsive(own) => own.ct_sigma *= ratio,
+        TrimValues::WindTunnel(own) => own.ct_sigma *= ratio,
+        TrimValues::Prescribed(_) => {}
+    }
+    after
+}
+
+/// A straight change of a value between two times as points of a schedule.
+fn ramp([from, to]: [f64; 2], at_s: f64, length_s: f64) -> Vec<(f64, f64)> {
+    vec![(at_s, from), (at_s + length_s, to)]
+}
+
+fn flight_of<'a>(
+    case: &Case,
+    values: &FlightValues,
+    path: &'a RotorPath,
+    model: &'a ActuatorModel,
+) -> Result<Flight<'a>, FlightError> {
+    let harmonics = values.harmonics.iter().filter_map(|&n| u32::try_from(n).ok()).collect();
+    let layout = ControlLayout::new(case.flaps.len(), harmonics)?;
+    let speeds = [values.start_advance_ratio, values.end_advance_ratio];
+    let settings = RelaxedSettings {
+        gain: values.gain,
+        amplitude_limit_volt: vec![values.amplitude_limit_volt; layout.pairs()],
+        rate_limit_volt: values.rate_limit_volt,
+        ..RelaxedSettings::of_layout(&layout)
+    };
+    let mut flight = Flight {
+        path,
+        model,
+        actuator_rev_hz: case.actuator.bench_rev_hz,
+        bias_volt: case.control.bias_volt,
+        rotor_rev_hz: case.rotor.omega_rpm / 60.0,
+        advance_ratio: ramp(speeds, values.ramp_at_s, values.ramp_s),
+        thrust_share: values
+            .thrust_step
+            .map(|step| ramp([0.0, 1.0], step.at_s, step.length_s))
+            .unwrap_or_default(),
+        duration_s: values.duration_s,
+        noise_share: 0.01 * values.noise_percent,
+        seed: values.seed as u64,
+        failure: values.failed_flap.map(|failed| FlapFailure {
+            flap: failed.flap - 1,
+            time_s: failed.at_s,
+            stuck_deg: failed.stuck_deg,
+            is_told: failed.notice == FailureNotice::Told,
+        }),
+        cycle_rev: [values.settling_rev, values.window_rev],
+        step_volt: case.t_step_volt(),
+        settings,
+        layout,
+    };
+    let state = flight.state_at(0.0);
+    let start = HubLoads::from_parts(path.loads(state, &[])?);
+    let weights: LoadWeights =
+        output_weights(&Setting::of_case(case, &start).load_weights(), HUB_OUTPUTS);
+    let law = FeedbackLaw::new(&flight.identify(state)?, &weights)?;
+    flight.settings.effort_weight = least_effort(&law);
+    flight.settings.load_weights = weights;
+    Ok(flight)
+}
+
+fn guidance_of(controller: FlightController, case: &Case, values: &FlightValues) -> Guidance {
+    match controller {
+        FlightController::Fixed => Guidance::Fixed,
+        FlightController::Scheduled => Guidance::Scheduled,
+        FlightController::Adaptive => Guidance::Adaptive(EstimatorSettings {
+            uncertainty: T0_UNCERTAINTY,
+            drift: T_DRIFT,
+            baseline_drift: 0.01 * values.z0_walk_percent,
+            ..EstimatorSettings::in_flight(case.control.amplitude_volt)
+        }),
+    }
+}
+
+/// When the last change of the schedule has ended, s; 0 without any.
+fn last_disturbance_s(values: &FlightValues) -> f64 {
+    let ends = [
+        (!values.is_level()).then_some(values.ramp_at_s + values.ramp_s),
+        values.thrust_step.map(|step| step.at_s + step.length_s),
+        values.failed_flap.map(|failed| failed.at_s),
+    ];
+    ends.into_iter().flatten().filter(|end| *end < values.duration_s).fold(0.0, f64::max)
+}

@@ -1,0 +1,122 @@
+//! The rotor of a flight against the nonlinear rotor, with 2 to 5/rev through one hysteresis.
+#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
+
+mod common;
+
+use common::actuator;
+use hhc_control::{ControlLayout, RelaxedSettings};
+use preisach_dyn::ActuatorModel;
+use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_flight::{FlapMarch, Flight, FlightState, Guidance, RotorPath, fly};
+use rotor_study::case::Case;
+use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled};
+
+/// The knots of a flight section by default: 0.15 to 0.30 in ten parts.
+const PARTS: u32 = 10;
+const PART: f64 = 0.015;
+/// Half way between knots, where interpolation errs most.
+const CONDITIONS: [f64; 2] = [0.15 + 4.5 * PART, 0.15 + 9.5 * PART];
+/// Cycles of a flight: the loop closes from zero control.
+const CYCLES: usize = 16;
+const CYCLE_REV: [usize; 2] = [1, 2];
+const ROTOR_REV_HZ: f64 = 383.0 / 60.0;
+
+fn size(loads: &[f64; HUB_OUTPUTS]) -> f64 {
+    loads.iter().map(|z| z * z).sum()
+}
+
+/// Motions of the flaps, deg, in every revolution of a closed loop at one speed, all harmonics through one hysteresis.
+fn flown(path: &RotorPath, model: &ActuatorModel, advance_ratio: f64) -> Vec<Vec<HarmonicSeries>> {
+    let layout = ControlLayout::new(2, vec![2, 3, 4, 5]).unwrap();
+    let settings = RelaxedSettings {
+        gain: 0.5,
+        effort_weight: 1e-13,
+        amplitude_limit_volt: vec![20.0; layout.pairs()],
+        rate_limit_volt: 10.0,
+        ..RelaxedSettings::of_layout(&layout)
+    };
+    let flight = Flight {
+        path,
+        model,
+        layout: layout.clone(),
+        actuator_rev_hz: 5.0,
+        bias_volt: 65.0,
+        rotor_rev_hz: ROTOR_REV_HZ,
+        advance_ratio: vec![(0.0, advance_ratio)],
+        thrust_share: vec![],
+        duration_s: (CYCLES * CYCLE_REV.iter().sum::<usize>()) as f64 / ROTOR_REV_HZ,
+        noise_share: 0.0,
+        seed: 1,
+        failure: None,
+        cycle_rev: CYCLE_REV,
+        step_volt: 4.25,
+        settings,
+    };
+    let points = fly(&flight, &Guidance::Scheduled).unwrap();
+    let mut flaps = FlapMarch::new(model, &layout, 5.0, 65.0).unwrap();
+    let rev = |control_volt: &Vec<f64>| {
+        let turns = flaps.revolve(control_volt).unwrap();
+        turns.into_iter().map(|turn| turn.flap_deg).collect()
+    };
+    let each = points.iter().flat_map(|p| std::iter::repeat_n(&p.control_volt, 3));
+    each.map(rev).collect()
+}
+
+/// The motions with one harmonic left out.
+fn without(motions: &[HarmonicSeries], harmonic: usize) -> Vec<HarmonicSeries> {
+    let mut motions = motions.to_vec();
+    for motion in &mut motions {
+        motion.set_harmonic(harmonic, Harmonic::default());
+    }
+    motions
+}
+
+/// Largest of `|J - J_true| / J0` and of `|Z - Z_true|^2 / J0` over the revolutions.
+fn worst(pairs: &[([f64; HUB_OUTPUTS], [f64; HUB_OUTPUTS])], j0: f64) -> [f64; 2] {
+    pairs.iter().fold([0.0_f64; 2], |worst, (found, truth)| {
+        let off = std::array::from_fn(|k| found[k] - truth[k]);
+        let cost = (size(found) - size(truth)).abs() / j0;
+        [worst[0].max(cost), worst[1].max(size(&off) / j0)]
+    })
+}
+
+/// `J` in time, and the loads behind it, are those of the nonlinear rotor in trim at that speed to 2 % of `J0`. Without a
+/// harmonic of the flaps, or with the nearest knot alone, they are not.
+#[test]
+fn loads_in_time_are_those_of_the_nonlinear_rotor() {
+    let case = Case::default();
+    let knots: Vec<f64> = (0..=PARTS).map(|k| 0.15 + PART * f64::from(k)).collect();
+    let path = RotorPath::new(&case, &knots).unwrap();
+    let model = actuator();
+    for advance_ratio in CONDITIONS {
+        let motions = flown(&path, &model, advance_ratio);
+        let rotor = TrimmedRotor::new(&Case { advance_ratio, ..case.clone() }, None).unwrap();
+        let nb = case.rotor.blades;
+        let j0 = size(&rotor.trim().rotor.hub.harmonic(nb));
+        let truth: Vec<[f64; HUB_OUTPUTS]> = motions
+            .iter()
+            .map(|own| {
+                let rad = own.iter().map(|m| scaled(m, 1.0_f64.to_radians())).collect();
+                rotor.with_flaps(rad).unwrap().hub.harmonic(nb)
+            })
+            .collect();
+        let against = |advance_ratio: f64, of: &dyn Fn(&[HarmonicSeries]) -> Vec<HarmonicSeries>| {
+            let state = FlightState { advance_ratio, thrust_share: 0.0 };
+            let found = motions.iter().map(|own| path.loads(state, &of(own)).unwrap());
+            worst(&found.zip(truth.iter().copied()).collect::<Vec<_>>(), j0)
+        };
+        let whole = against(advance_ratio, &<[HarmonicSeries]>::to_vec);
+        let largest = truth.iter().map(size).fold(0.0, f64::max) / j0;
+        let last = size(&truth[truth.len() - 1]) / j0;
+        println!("{advance_ratio}: end {last:.4}, J up to {largest:.2} J0, off {whole:.5?}");
+        assert!(whole[0] < 0.02 && whole[1] < 0.02, "{advance_ratio}: {whole:?}");
+        let nearest = against(advance_ratio + 0.5 * PART, &<[HarmonicSeries]>::to_vec);
+        println!("nearest knot: {nearest:.4?}");
+        assert!(nearest[0] > 0.02, "{nearest:?}");
+        for n in 2..=5 {
+            let left_out = against(advance_ratio, &|own| without(own, n));
+            println!("without {n}/rev: {left_out:.4?}");
+            assert!(left_out[0] > 0.02, "{n}: {left_out:?}");
+        }
+    }
+}

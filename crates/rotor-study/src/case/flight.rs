@@ -1,0 +1,134 @@
+//! The section of a case that describes a flight in time.
+
+use super::field::{Value, section, values, variant_names};
+use serde::{Deserialize, Serialize};
+
+/// How a controller knows T along a flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FlightController {
+    /// T of the start, held.
+    Fixed,
+    /// T over the advance ratio, interpolated.
+    Scheduled,
+    /// T of the start, then estimated with Z0 and the noise.
+    Adaptive,
+}
+
+impl FlightController {
+    /// Name in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::Scheduled => "scheduled",
+            Self::Adaptive => "adaptive",
+        }
+    }
+}
+
+/// Whether the controller hears of a flap that fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FailureNotice {
+    /// At the end of the cycle.
+    #[default]
+    Told,
+    /// Never.
+    Untold,
+}
+
+values!(FailureNotice);
+
+impl Value for Vec<FlightController> {
+    fn choices() -> &'static [&'static str] {
+        variant_names::<FlightController>()
+    }
+}
+
+section! {
+    /// A flight in time, for `hhc fly`: speed, thrust, a flap that fails, noise, and controllers side by side.
+    #[serde(deny_unknown_fields, default)]
+    pub struct FlightValues {
+        /// Length of the flight.
+        pub duration_s: f64 = 60.0, Within(1.0, 3600.0), "s", "60 s is usual";
+        /// Advance ratio at the start.
+        pub start_advance_ratio: f64 = 0.15, Within(0.0, 0.5), "", "the attached-flow rotor model ends at 0.5; 0 is hover";
+        /// Advance ratio at the end.
+        pub end_advance_ratio: f64 = 0.30, Within(0.0, 0.5), "", "the attached-flow rotor model ends at 0.5; 0 is hover";
+        /// When the advance ratio begins to change.
+        pub ramp_at_s: f64 = 10.0, Within(0.0, 3600.0), "s", "counted from the start of the flight";
+        /// Time in which it changes, linearly; 0 is a step.
+        pub ramp_s: f64 = 20.0, Within(0.0, 3600.0), "s", "20 s is usual; 0 is a step";
+        /// Advance ratios at which the rotor is trimmed and linearised, evenly from start to end. Loads are linear
+        /// in between.
+        pub knots: usize = 11, Count(2, 100), "", "11 from 0.15 to 0.30 keep J within 2 % of J0";
+        /// A step of the thrust, such as `(at_s: 40, ratio: 1.1)`; left out, none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub thrust_step: Option<ThrustStep> = None, Any, "", "";
+        /// A flap that fails, such as `(flap: 1, at_s: 50)`; left out, none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub failed_flap: Option<FailedFlap> = None, Any, "", "";
+        /// Standard deviation of the noise of a load in one revolution, over the root mean square of the loads
+        /// at the start.
+        pub noise_percent: f64 = 3.0, Within(0.0, 100.0), "%", "3.16 % are 30 dB, 10 % are 20 dB";
+        /// Seed of the noise, the same for all controllers.
+        pub seed: usize = 1, Count(0, 4_294_967_295), "", "any whole number up to 2^32 - 1";
+        /// Harmonics, commanded all at once.
+        pub harmonics: Vec<usize> = vec![2, 3, 4, 5], Rule("1 to 10, each once"), "1/rev", "";
+        /// Controllers, each flown on its own. `Fixed`: T of the start, held. `Scheduled`: T over the advance
+        /// ratio. `Adaptive`: T estimated on the way.
+        pub controllers: Vec<FlightController> = vec![
+            FlightController::Fixed,
+            FlightController::Scheduled,
+            FlightController::Adaptive,
+        ], Rule("each once"), "", "";
+        /// Revolutions of a cycle that let the rotor settle.
+        pub settling_rev: usize = 1, Count(0, 100), "", "1 is usual";
+        /// Revolutions of a cycle that are measured.
+        pub window_rev: usize = 2, Count(1, 100), "", "2 is usual";
+        /// Part of the way to the optimum that a cycle goes.
+        pub gain: f64 = 0.5, Within(1e-3, 1.0), "", "0.5 is usual; 1 is the whole way";
+        /// Largest voltage amplitude of a flap at a harmonic.
+        pub amplitude_limit_volt as "amplitude_limit_V": f64 = 20.0, UpTo(1e4), "V",
+            "20 V for each of four harmonics leave the full scale of 85 V to all of them";
+        /// Largest change of it in a cycle.
+        pub rate_limit_volt as "rate_limit_V": f64 = 10.0, UpTo(1e4), "V", "10 V is usual";
+        /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.
+        pub z0_walk_percent: f64 = 20.0, Within(1e-2, 100.0), "%", "20 % for manoeuvres, 1 % for steady flight";
+    }
+}
+
+impl FlightValues {
+    /// Whether the advance ratio stays as it is.
+    pub fn is_level(&self) -> bool {
+        self.start_advance_ratio.to_bits() == self.end_advance_ratio.to_bits()
+    }
+}
+
+section! {
+    /// A step of the thrust of a flight.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct ThrustStep {
+        /// When it begins.
+        pub at_s: f64 = 40.0, Rule("0 to `duration_s`"), "s", "";
+        /// Thrust or weight after it, over that of the trim.
+        pub ratio: f64 = 1.1, Within(0.5, 1.5), "", "1.1 is a tenth more";
+        /// Time in which it is made, linearly.
+        pub length_s: f64 = 0.5, Within(0.0, 3600.0), "s", "0 is a jump";
+    }
+}
+
+section! {
+    /// A flap that stops and stays where it is stuck, on every blade.
+    #[derive(Copy)]
+    #[serde(deny_unknown_fields, default)]
+    pub struct FailedFlap {
+        /// Its number, counted from the root.
+        pub flap: usize = 1, Rule("1 to the number of flaps"), "", "";
+        /// When it fails.
+        pub at_s: f64 = 50.0, Rule("0 to `duration_s`"), "s", "";
+        /// Angle at which it is stuck, trailing edge down positive.
+        pub stuck_deg: f64 = 0.0, Within(-20.0, 20.0), "deg", "the rotor is linear in its flaps: a few deg";
+        /// Whether the controller hears of it, at the end of the cycle.
+        pub notice: FailureNotice = FailureNotice::Told, Any, "", "";
+    }
+}

@@ -1,0 +1,201 @@
+//! `hhc fly`: the flight of a case in time, as table, CSV and page.
+
+mod page;
+
+pub use page::flight_html;
+
+use crate::SimError;
+use crate::actuator::case_actuators;
+use crate::case::{FailureNotice, FlightValues, LoadedCase};
+use crate::output::{Printable, Sheet};
+use crate::problem::{Fault, Problem};
+use crate::progress::Progress;
+use report_page::Section;
+use rotor_flight::{FlightPoint, FlownCase, FlownController, fly_case};
+use rotor_study::HubLoads;
+use serde::Serialize;
+
+/// What a case without a flight is told.
+const NO_FLIGHT: &str = "the case has no flight to fly; add `flight: ()`, which is 60 s with an advance ratio of 0.15 to 0.30, or see `hhc init` for its fields";
+
+/// A flown case with what is said of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlightResult {
+    /// Title of the case.
+    pub title: String,
+    /// What truth is, and what was asked for.
+    pub notes: Vec<String>,
+    /// What a reader should know first.
+    pub warnings: Vec<String>,
+    /// Harmonics commanded, per rev.
+    pub harmonics: Vec<usize>,
+    /// Blade number, per rev of the hub loads.
+    pub blades: usize,
+    /// Units of the loads, N and N m.
+    pub units: [f64; 2],
+    /// The flights.
+    pub flown: FlownCase,
+}
+
+/// Flies a case.
+///
+/// # Errors
+/// A case without a flight; what its actuators are refused for; [`SimError::Flight`].
+pub fn flown(loaded: &LoadedCase) -> Result<FlightResult, SimError> {
+    let case = &loaded.case;
+    let Some(values) = &case.flight else {
+        let fault = Fault::Refused { message: NO_FLIGHT.to_owned() };
+        return Err(Problem::new(loaded.index.place("flight"), fault).into());
+    };
+    // what is said of the actuator is of the harmonics flown
+    let mut flying = loaded.clone();
+    flying.case.control.harmonics = vec![values.harmonics.clone()];
+    let actuators = case_actuators(&flying)?;
+    let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
+    let progress = Progress::new(1 + values.controllers.len());
+    progress.doing("trims and flights");
+    let found = fly_case(case, values, model, &|| progress.step());
+    progress.finish();
+    let flown = found.map_err(|source| SimError::Flight {
+        place: loaded.index.place(source.field()),
+        source: Box::new(source),
+    })?;
+    let scales = case.scales();
+    Ok(FlightResult {
+        title: case.title.clone(),
+        notes: notes(values, &actuators.data_title),
+        warnings: [&loaded.warnings[..], &actuators.warnings[..]].concat(),
+        harmonics: values.harmonics.clone(),
+        blades: case.rotor.blades,
+        units: [scales.force_newton(), scales.moment_newton_metre()],
+        flown,
+    })
+}
+
+/// What truth is and what happens, in sentences.
+fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
+    let actuator = if actuator.is_empty() { "the ideal linear one" } else { actuator };
+    let mut notes = vec![
+        format!(
+            "Truth: the rotor in trim at {} advance ratios, linear in its flaps, interpolated linearly in between. Every revolution is a steady state.",
+            if values.is_level() { 1 } else { values.knots }
+        ),
+        format!(
+            "Actuators: {actuator}. Each flap is marched through its own hysteresis, all harmonics at once."
+        ),
+        format!(
+            "Speed: advance ratio {} to {} in {} s from {} s on.",
+            values.start_advance_ratio, values.end_advance_ratio, values.ramp_s, values.ramp_at_s
+        ),
+    ];
+    notes.extend(values.thrust_step.map(|step| {
+        format!("Thrust: times {} within {} s from {} s on.", step.ratio, step.length_s, step.at_s)
+    }));
+    notes.extend(values.failed_flap.map(|failed| {
+        let told = if failed.notice == FailureNotice::Told { "told" } else { "not told" };
+        let (flap, at_s, stuck_deg) = (failed.flap, failed.at_s, failed.stuck_deg);
+        format!("Failure: flap {flap} stuck at {stuck_deg} deg from {at_s} s on; the controller is {told}.")
+    }));
+    let (noise, seed) = (values.noise_percent, values.seed);
+    notes.push(format!("Noise: {noise} % of the loads at the start in each revolution, seed {seed}."));
+    notes
+}
+
+/// Amplitudes of the six hub loads, N and N m.
+fn load_amplitudes(parts: [f64; 12], [newton, newton_metre]: [f64; 2]) -> [f64; 6] {
+    let mut amplitudes = HubLoads::from_parts(parts).amplitudes();
+    for (k, amplitude) in amplitudes.iter_mut().enumerate() {
+        *amplitude *= if k < 3 { newton } else { newton_metre };
+    }
+    amplitudes
+}
+
+/// Every cycle of every controller: a row each.
+pub fn flight_csv(of: &FlightResult) -> String {
+    let mut text = String::new();
+    for FlownController { controller, points, .. } in &of.flown.flights {
+        for point in points {
+            let fields = fields(of, point);
+            if text.is_empty() {
+                let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
+                text = format!("controller,{}\n", names.join(","));
+            }
+            let values: Vec<String> = fields.iter().map(|(_, value)| value.to_string()).collect();
+            text += &format!("{controller},{}\n", values.join(","));
+        }
+    }
+    text
+}
+
+/// Names and values of a cycle.
+fn fields(of: &FlightResult, point: &FlightPoint) -> Vec<(String, f64)> {
+    let mut fields: Vec<(String, f64)> = [
+        ("time_s", point.time_s),
+        ("advance_ratio", point.advance_ratio),
+        ("thrust_share", point.thrust_share),
+        ("j", point.cost),
+        ("j_over_j0", point.cost_ratio),
+        ("power_W", point.power_watt),
+        ("limited", f64::from(u8::from(point.is_limited))),
+        ("held_percent", 100.0 * point.held_share),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into();
+    let both = [("", point.loads), ("_without_control", point.loads_at_rest)];
+    for (ending, loads) in both {
+        let named = HubLoads::NAMES.iter().zip(load_amplitudes(loads, of.units)).enumerate();
+        fields.extend(named.map(|(k, (name, value))| {
+            let unit = if k < 3 { "N" } else { "N_m" };
+            (format!("{name}_{}_per_rev{ending}_{unit}", of.blades), value)
+        }));
+    }
+    let pairs = point.control_volt.chunks_exact(2 * of.harmonics.len()).enumerate();
+    for (flap, control) in pairs {
+        let of_flap = |name: String| format!("flap{}_{name}", flap + 1);
+        let each = of.harmonics.iter().zip(control.chunks_exact(2));
+        fields.extend(each.map(|(n, own)| (of_flap(format!("{n}_per_rev_V")), own[0].hypot(own[1]))));
+        let [low, high] = point.volt[flap];
+        fields.extend([("lowest_V", low), ("highest_V", high)].map(|(n, v)| (of_flap(n.to_owned()), v)));
+        let moved = point.flap_deg[flap].iter().enumerate();
+        fields.extend(moved.map(|(k, deg)| (of_flap(format!("{}_per_rev_deg", k + 1)), *deg)));
+    }
+    fields
+}
+
+impl FlightResult {
+    /// The controllers beside each other.
+    fn summary(&self) -> Section {
+        let row = |own: &FlownController| {
+            let s = &own.summary;
+            vec![
+                own.controller.to_owned(),
+                format!("{:.3}", s.mean_cost_ratio),
+                format!("{:.2} at {:.1} s", s.worst_cost_ratio, s.worst_at_s),
+                format!("{:.3}", s.end_cost_ratio),
+                s.settles_in_s.map_or_else(|| "no".to_owned(), |time_s| format!("{time_s:.1} s")),
+                format!("{:.0} %", 100.0 * s.limited_share),
+                format!("{:.1} %", 100.0 * s.held_share),
+                format!("{:.2} W", s.power_watt),
+            ]
+        };
+        let header = ["T", "mean J/J0", "worst", "end", "settles in", "at limit", "held", "power"];
+        Section {
+            title: "Controllers".to_owned(),
+            text: "J0 is without control in the same state. Settles: from the last change until J/J0 stays within 0.05 of its end. At limit: cycles in which an amplitude is at its limit. Held: samples of the voltage at an end of the range. Power: of the actuators of one blade.".to_owned(),
+            header: header.map(str::to_owned).into(),
+            rows: self.flown.flights.iter().map(row).collect(),
+        }
+    }
+}
+
+impl Printable for FlightResult {
+    fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(&self.title);
+        for note in &self.notes {
+            sheet.paragraphs(note);
+        }
+        sheet.block(&self.summary().to_string());
+        sheet.finish()
+    }
+}

@@ -1,0 +1,111 @@
+//! `hhc fly`: a short flight with all that can happen, and flights that cannot be.
+
+use crate::place::{Place, QUICK_CASE};
+use std::process::Command;
+
+/// 12 s: a ramp, a step of the thrust, a flap that sticks; 2 and 3/rev at once on the ideal actuator.
+const FLIGHT: &str = "duration_s: 12, start_advance_ratio: 0.18, end_advance_ratio: 0.20, ramp_at_s: 1, ramp_s: 2,
+        knots: 2, thrust_step: (at_s: 5, ratio: 1.1), failed_flap: (flap: 2, at_s: 8, stuck_deg: 0.5),
+        noise_percent: 1, harmonics: [2, 3], amplitude_limit_V: 40";
+
+fn flying(flight: &str) -> Place {
+    let place = Place::new();
+    let section = format!("    flight: ({flight}),\n    control: (");
+    place.write("case.ron", &QUICK_CASE.replace("    control: (", &section));
+    place
+}
+
+/// Rows of the table by their columns' names.
+fn rows(csv: &str) -> Vec<std::collections::BTreeMap<&str, &str>> {
+    let mut lines = csv.lines();
+    let names: Vec<&str> = lines.next().unwrap().split(',').collect();
+    lines.map(|line| names.iter().copied().zip(line.split(',')).collect()).collect()
+}
+
+#[test]
+fn a_flight_is_told_drawn_and_tabled() {
+    let place = flying(FLIGHT);
+    let said = place.hhc(&["fly", "case.ron"]).done();
+    for part in ["mean J/J0", "settles in", "fixed", "scheduled", "adaptive", "Truth: ", "not told"] {
+        assert_eq!(said.contains(part), part != "not told", "{part}: {said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() <= 100), "{said}");
+    let csv = place.read("out/case/flight.csv");
+    let rows = rows(&csv);
+    // three controllers, each with the cycles of three revolutions that 12 s hold
+    assert_eq!(rows.len(), 3 * 26, "{csv}");
+    let number = |row: usize, name: &str| -> f64 { rows[row][name].parse().unwrap() };
+    for start in [0, 26, 52] {
+        assert!((number(start, "j_over_j0") - 1.0).abs() < 1e-6, "{}", rows[start]["j_over_j0"]);
+        assert!(number(start + 15, "j_over_j0") < 0.9, "{}", rows[start + 15]["j_over_j0"]);
+        let [before, after] = [start + 9, start + 12];
+        let load = "fz_4_per_rev_without_control_N";
+        assert!((number(after, load) / number(before, load) - 1.0).abs() > 0.02, "the step is felt");
+        assert!(number(start + 15, "flap2_2_per_rev_deg") > 0.05);
+        assert!(number(start + 25, "flap2_2_per_rev_deg") == 0.0, "it is stuck");
+        assert!(number(start + 25, "flap1_2_per_rev_deg") > 0.05, "the other one goes on");
+        assert!(number(start + 25, "power_W") < number(start + 15, "power_W"));
+        assert!(number(start + 15, "flap1_highest_V") > number(start + 15, "flap1_lowest_V") + 1.0);
+    }
+    let page = place.read("out/case/flight.html");
+    assert!(page.contains("<svg") && page.contains("FZ at 4/rev") && !page.contains("<script"));
+    let told = place.hhc(&["fly", "case.ron", "--out", "b", "--format", "json"]).json();
+    assert_eq!(told["flown"]["flights"][1]["controller"], "scheduled");
+    assert_eq!(place.read("b/flight.csv"), csv);
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let place = flying(FLIGHT);
+    let of = |threads: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hhc"));
+        command.args(["fly", "case.ron", "--out", threads]);
+        command.env("RAYON_NUM_THREADS", threads).current_dir(place.path());
+        assert!(command.output().unwrap().status.success());
+        place.read(&format!("{threads}/flight.csv"))
+    };
+    assert_eq!(of("1"), of("3"));
+}
+
+#[test]
+fn flights_that_cannot_be_are_refused() {
+    let place = Place::new();
+    place.write("case.ron", QUICK_CASE);
+    let before = place.listing();
+    place.hhc(&["fly", "case.ron"]).rejected(&["case.ron", "has no flight", "add `flight: ()`"]);
+    assert_eq!(place.listing(), before, "nothing is written");
+    for (flight, parts) in [
+        ("duration_s: 0", ["flight.duration_s", "is 0 s, expected 1 to 3600 s"]),
+        ("start_advance_ratio: 0.7", ["flight.start_advance_ratio", "expected 0 to 0.5"]),
+        ("ramp_s: -1", ["flight.ramp_s", "expected 0 to 3600 s"]),
+        ("knots: 1", ["flight.knots", "expected 2 to 100"]),
+        ("harmonics: []", ["flight.harmonics", "give at least one harmonic"]),
+        ("harmonics: [2, 2]", ["flight.harmonics[1]", "once"]),
+        ("harmonics: [11]", ["flight.harmonics[0]", "expected 1 to 10"]),
+        ("controllers: []", ["flight.controllers", "[Fixed, Scheduled, Adaptive]"]),
+        ("controllers: [Fixed, Fixed]", ["flight.controllers", "each controller once"]),
+        ("controllers: [Wild]", ["flight.controllers", "Wild"]),
+        ("thrust_step: (at_s: 70)", ["flight.thrust_step.at_s", "flight.duration_s"]),
+        ("thrust_step: (ratio: 9)", ["flight.thrust_step.ratio", "expected 0.5 to 1.5"]),
+        ("failed_flap: (flap: 3)", ["flight.failed_flap.flap", "expected 1 to 2"]),
+        ("failed_flap: (flap: 0)", ["flight.failed_flap.flap", "expected 1 to 2"]),
+        ("failed_flap: (at_s: -1)", ["flight.failed_flap.at_s", "expected 0 to 60 s"]),
+        ("failed_flap: (stuck_deg: 90)", ["flight.failed_flap.stuck_deg", "expected -20 to 20 deg"]),
+        ("noise_percent: -3", ["flight.noise_percent", "expected 0 to 100"]),
+        ("window_rev: 0", ["flight.window_rev", "expected 1 to 100"]),
+        ("gain: 2", ["flight.gain", "expected 0.001 to 1"]),
+        ("amplitude_limit_V: 0", ["flight.amplitude_limit_V", "positive"]),
+        ("rate_limit_V: NaN", ["flight.rate_limit_V", "positive"]),
+        ("z0_walk_percent: 0", ["flight.z0_walk_percent", "expected 0.01 to 100"]),
+    ] {
+        flying(flight).hhc(&["fly", "case.ron"]).rejected(&parts);
+    }
+    let place = flying("thrust_step: ()");
+    let text = place.read("case.ron");
+    let trim = "trim: WindTunnel(ct_sigma: 0.07, shaft_tilt_deg: 3.0)";
+    assert!(text.contains(trim), "{text}");
+    place.write("case.ron", &text.replace(trim, "trim: Prescribed(theta0_deg: 4)"));
+    place.hhc(&["fly", "case.ron"]).rejected(&["flight.thrust_step", "leave thrust_step out"]);
+    place.write("case.ron", "(flaps: [], control: (harmonics: []), flight: ())");
+    place.hhc(&["fly", "case.ron"]).rejected(&["case.ron", "give flaps"]);
+}
