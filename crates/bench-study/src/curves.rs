@@ -70,6 +70,7 @@ pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, BenchErr
         held_out_rms_percent: held_out.rms_percent,
         held_out_worst_percent: held_out.worst_curve_percent,
         written_to: None,
+        page_written_to: None,
     };
     let (content_hash, channels) = (data.content_hash.clone(), data.channels.clone());
     Ok(CurveIdentification { content_hash, channels, data: corrected, fit, result })
@@ -170,6 +171,8 @@ pub struct CurvesResult {
     pub held_out_worst_percent: f64,
     /// File the model was written to.
     pub written_to: Option<String>,
+    /// Page of pictures beside it.
+    pub page_written_to: Option<String>,
 }
 
 impl CurvesResult {
@@ -206,6 +209,9 @@ impl CurvesResult {
         ));
         if let Some(path) = &self.written_to {
             sheet.line(format_args!("Model written to {path}"));
+        }
+        if let Some(path) = &self.page_written_to {
+            sheet.line(format_args!("Page written to {path}"));
         }
         sheet.finish()
     }

@@ -9,15 +9,19 @@ const TITLE: &str = "FORC diagram";
 /// Cells of the picture on a side at most.
 const CELLS: usize = 48;
 
-/// The diagrams as maps over half-width and centre of the relays.
-pub(super) fn section(diagrams: &[ForcDiagram], units: [&str; 2]) -> Markup {
+/// What is said of records without reversal curves.
+pub(super) fn none_held() -> String {
+    format!(
+        "The data hold no first-order reversal curves. Record a run that falls from the upper end of the range to a turning point and rises back to the end. Do so {FEWEST} times at least, each time to another turning point, slowly."
+    )
+}
+
+/// The diagrams as maps over half-width and centre of the relays; what is said where there are none.
+pub(super) fn section(diagrams: &[ForcDiagram], none: &str, units: [&str; 2]) -> Markup {
     if diagrams.is_empty() {
-        let text = format!(
-            "The data hold no first-order reversal curves. Record a run that falls from the upper end of the range to a turning point and rises back to the end, {FEWEST} times at least, each time to another turning point, slowly."
-        );
-        return titled("forc", TITLE, &text, &[]);
+        return titled("forc", TITLE, none, &[]);
     }
-    let text = "Second mixed derivative of the reversal curves, with no model in it: density of relays over their half-width and their centre. Orange above zero, blue below. Points next to the axis and at the outermost curves are left out, since their window is not complete.";
+    let text = "Second mixed derivative of the reversal curves, with no model in it: density of relays over their half-width and their centre. Orange: above zero, blue: below. Points at small half-widths and of the outermost curves are left out: their window is not complete.";
     let figures = diagrams.iter().map(|own| picture(own, units));
     titled("forc", TITLE, text, &[grid("grid wide", figures)])
 }

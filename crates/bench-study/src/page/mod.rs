@@ -55,7 +55,7 @@ pub fn bench_page(
         response::section(result, units),
         spectrum::section(found, &simulated, units[1]),
         density::section(statics, found.identification.density_spread.as_ref(), result, units),
-        forc::section(&of_records(&found.records), units),
+        forc::section(&of_records(&found.records), &forc::none_held(), units),
         models(result),
         parameters(result),
     ];
@@ -63,13 +63,7 @@ pub fn bench_page(
 }
 
 /// The page of an identification from reversal curves; `result` is what was printed of it.
-///
-/// # Errors
-/// [`BenchError::Actuator`] if the family is too small for a diagram.
-pub fn curves_page(
-    found: &CurveIdentification,
-    result: &CurvesResult,
-) -> Result<String, BenchError> {
+pub fn curves_page(found: &CurveIdentification, result: &CurvesResult) -> String {
     let units = found.units();
     let none = |class: &str, title: &str, text: &str| titled(class, title, text, &[]);
     let quasi_static = "Reversal curves are quasi-static: they hold no frequency. Record sines at three frequencies or more, in the range of use.";
@@ -90,7 +84,11 @@ pub fn curves_page(
             "Reversal curves carry no times. Record runs with a column of time, several steady cycles each: what differs between them is the noise.",
         ),
         density::of_curves(found.model(), units),
-        forc::section(&[found.diagram()?], units),
+        forc::section(
+            found.diagram().ok().as_slice(),
+            "The family is too small or too coarse for a diagram: record seven curves at least, their steps as fine as their distances.",
+            units,
+        ),
         none(
             "models",
             MODELS,
@@ -102,7 +100,7 @@ pub fn curves_page(
             "The model has no parameter but its density. Record runs in time at several frequencies for lags, creep and relaxation.",
         ),
     ];
-    Ok(finished(&result.title, &result.dataset, &parts))
+    finished(&result.title, &result.dataset, &parts)
 }
 
 /// Titles of the sections.

@@ -9,6 +9,7 @@ mod compare;
 mod diagnosis_page;
 mod disk;
 mod identify;
+mod identify_page;
 mod import;
 mod lab;
 mod measured;
