@@ -9,8 +9,9 @@ const NEAR: f64 = 0.02;
 const TURN: f64 = 0.01;
 /// Fewest reversal curves of a diagram.
 pub(crate) const FEWEST: usize = 5;
-/// Largest smoothing factor, and steps of the input between two reversals.
+/// Largest smoothing factor, curves that each step of it asks for, and steps of the input between two reversals.
 const SMOOTHING: usize = 3;
+const CURVES: usize = 8;
 const STEPS: f64 = 2.0;
 
 /// A FORC diagram and what it is of.
@@ -37,7 +38,7 @@ fn of_record(record: &BenchRecord) -> Option<ForcDiagram> {
     let (input, output) = (&record.voltage_volt[window.clone()], &record.output_deg[window]);
     let turned = |values: &[f64]| values.iter().map(|value| -value).collect::<Vec<_>>();
     let own = |curves: ForcData, sign: f64| {
-        let smoothing = ((curves.curves.len() - 1) / 4).clamp(1, SMOOTHING);
+        let smoothing = ((curves.curves.len() - 1) / CURVES).clamp(1, SMOOTHING);
         let mut points = diagram(&curves, smoothing).ok().filter(|points| !points.is_empty())?;
         for point in &mut points {
             point.reversal_input *= sign;
@@ -137,7 +138,7 @@ mod tests {
         for sign in [1.0, -1.0] {
             let found = of_records(&[reversals(sign, 1.5)]);
             let [own] = &found[..] else { panic!("{found:?}") };
-            assert_eq!((own.curves, own.smoothing), (10, 2));
+            assert_eq!((own.curves, own.smoothing), (10, 1));
             // -1/2 d2y / (dHa dH) of -2 Ha H
             assert!(own.points.iter().all(|point| (point.density - 1.0).abs() < 0.05), "{own:?}");
             assert!(own.points.iter().all(|point| point.half_width > 0.0));

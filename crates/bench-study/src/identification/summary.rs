@@ -203,7 +203,7 @@ pub struct DensityLine {
     pub cells: usize,
     /// Those at their bound, zero.
     pub at_bound: usize,
-    /// Those that have more of their value from their neighbours than from the records.
+    /// Those of which the records say less than a twentieth: the rest is that of their neighbours.
     pub from_neighbours: usize,
     /// Standard deviation of the noise of the slow records, in the unit of the output.
     pub noise: f64,
@@ -211,8 +211,9 @@ pub struct DensityLine {
     pub noise_source: NoiseSource,
 }
 
-/// Share of a rise from the records below which it counts as that of its neighbours.
-pub(crate) const LEAST_SHARE: f64 = 0.5;
+/// Share of a rise from the records below which it counts as that of its neighbours. A density that is smooth over some
+/// cells has that many parts.
+pub(crate) const LEAST_SHARE: f64 = 0.05;
 
 impl DensityLine {
     fn of(spread: &DensitySpread) -> Self {
@@ -234,7 +235,7 @@ impl DensityLine {
             NoiseSource::Residual => "what the static model leaves, no cycle being repeated",
         };
         format!(
-            "Of {} cells {} are at their bound, zero, and {} have more from their neighbours than from the runs; noise {} {unit}, {source}.",
+            "Of {} cells {} are at their bound, zero, and {} have less than a twentieth from the runs; noise {} {unit}, {source}.",
             self.cells,
             self.at_bound,
             self.from_neighbours,

@@ -71,7 +71,7 @@ pub(super) fn section(
                 spread.rise_std_deg[j][k].filter(|_| share >= LEAST_SHARE)
             };
             figures.push(map(law, "standard deviation", &known, units));
-            text += " The deviation is what white noise of the runs does to the fit, by its equations with the smoothness and the bounds in use. What the model itself cannot follow is not in it. Empty cells are at their bound or have more from their neighbours than from the runs. ";
+            text += " The deviation is what white noise of the runs does to the fit, by its equations with the smoothness and the bounds in use. What the model itself cannot follow is not in it. Empty cells are at their bound, or have less than a twentieth from the runs and the rest from their neighbours. ";
             text += &line.text(units[1]);
         }
         _ => {

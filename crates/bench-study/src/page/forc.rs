@@ -32,7 +32,8 @@ fn picture(own: &ForcDiagram, [input, output]: [&str; 2]) -> Markup {
         let ends = [f64::INFINITY, f64::NEG_INFINITY];
         own.points.iter().map(of).fold(ends, |own, v| [own[0].min(v), own[1].max(v)])
     };
-    let [widths, centres] = [all(|point| point.half_width), all(|point| point.centre)];
+    let [mut widths, centres] = [all(|point| point.half_width), all(|point| point.centre)];
+    widths[0] = 0.0;
     let longest = (widths[1] - widths[0]).max(centres[1] - centres[0]);
     let cells = (own.points.len() as f64).sqrt().min(CELLS as f64);
     let side = (longest / cells).max(f64::MIN_POSITIVE);
@@ -48,8 +49,12 @@ fn picture(own: &ForcDiagram, [input, output]: [&str; 2]) -> Markup {
         *sum = (sum.0 + point.density, sum.1 + 1);
     }
     let mean = |sum: &(f64, u32)| (sum.1 > 0).then(|| sum.0 / f64::from(sum.1));
-    let values: Vec<Vec<Option<f64>>> =
-        sums.iter().map(|row| row.iter().map(mean).collect()).collect();
+    // a row ends at its last cell with a point
+    let ended = |row: &Vec<(f64, u32)>| {
+        let end = row.iter().rposition(|sum| sum.1 > 0).map_or(0, |last| last + 1);
+        row[..end].iter().map(mean).collect()
+    };
+    let values: Vec<Vec<Option<f64>>> = sums.iter().map(ended).collect();
     let limit = values.iter().flatten().flatten().fold(0.0, |most: f64, v| most.max(v.abs()));
     let middle = |low: f64| move |k: usize| short(low + (k as f64 + 0.5) * side);
     let name = middle(centres[0]);
@@ -62,7 +67,7 @@ fn picture(own: &ForcDiagram, [input, output]: [&str; 2]) -> Markup {
             short(limit)
         ),
         rows: (0..rows).rev().map(name).collect(),
-        columns: (0..columns).map(middle(widths[0])).collect(),
+        columns: (0..columns.max(rows)).map(middle(widths[0])).collect(),
         values,
         limit: if limit > 0.0 { limit } else { 1.0 },
         is_square: true,

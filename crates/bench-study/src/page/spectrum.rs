@@ -48,7 +48,7 @@ pub(super) fn section(found: &BenchIdentification, simulated: &[Vec<f64>], unit:
         let title = format!("{} more runs", rest.len());
         parts.push(folded(&title, &grid("grid", rest.iter().map(panel))));
     }
-    let mut text = "Measured less simulated, over the samples judged. Where blue lies above grey, the model misses something. White noise is a level line at its standard deviation.".to_owned();
+    let mut text = "Measured less simulated, over the samples judged. Where blue lies above grey, the model misses something. White noise is a level line at its standard deviation. What still settles from cycle to cycle counts as noise.".to_owned();
     if spectra.iter().any(|own| own.1.noise.is_none()) {
         text += " A run without a grey line repeats no cycle: record three steady cycles or more.";
     }

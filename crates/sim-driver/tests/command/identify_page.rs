@@ -76,7 +76,7 @@ fn shows_what_is_printed(page: &str, json: &Value, details: &str) {
     }
     let spread = &json["density_spread"];
     let told = format!(
-        "Of {} cells {} are at their bound, zero, and {} have more",
+        "Of {} cells {} are at their bound, zero, and {} have less than a twentieth",
         spread["cells"], spread["at_bound"], spread["from_neighbours"]
     );
     assert!(section(page, "density").contains(&told) && details.contains(&told), "{told}");
