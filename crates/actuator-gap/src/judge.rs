@@ -1,12 +1,13 @@
 //! How well a model fits the records, judged by `model-gap` from simulated outputs: the identification
 //! does not mark its own work.
 
-use crate::{DiagnosisError, StoredFit};
+use crate::{DiagnosisError, HarmonicResponse, StoredFit};
 use measured_data::limits;
 use model_gap::{EnergySplit, FirstHarmonicError, Misfit, noise_variance};
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{BenchRecord, Identification, RecordReport};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A record whose fit cannot be judged.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -57,15 +58,19 @@ fn judge(
     let (drive, step_s) = (&report.drive, record.time_step_s);
     // amplitude, phase and noise from the whole steady cycles of the window
     let steady = drive.steady_within(&window, step_s);
-    let first = steady
-        .clone()
-        .map(|steady| {
-            let (y, model) = (&measured[steady.clone()], &simulated[steady]);
-            // a period found from samples is a little off: a sample short is a whole cycle still
-            let hz = drive.strongest_hz().max(1.0 / (y.len() as f64 * step_s));
-            FirstHarmonicError::of(y, model, step_s, hz)
-        })
-        .transpose()?;
+    let against = |steady: &Range<usize>, other: &[f64]| {
+        let y = &measured[steady.clone()];
+        // a period found from samples is a little off: a sample short is a whole cycle still
+        let hz = drive.strongest_hz().max(1.0 / (y.len() as f64 * step_s));
+        FirstHarmonicError::of(y, &other[steady.clone()], step_s, hz)
+    };
+    let first = steady.as_ref().map(|steady| against(steady, &simulated)).transpose()?;
+    let command =
+        steady.as_ref().map(|steady| against(steady, &record.voltage_volt)).transpose()?;
+    let response = steady.as_ref().zip(command).map(|(steady, command)| {
+        let scatter = report.noise.map(|noise| noise.std_deg * (2.0 / steady.len() as f64).sqrt());
+        response(&command, scatter)
+    });
     // a record without repeats tells no noise
     let noise =
         steady.and_then(|steady| noise_variance(&measured[steady], step_s, drive.base_hz).ok());
@@ -91,7 +96,24 @@ fn judge(
         amplitude_error_percent: first.as_ref().map(|f| 100.0 * (f.amplitude_ratio - 1.0)),
         phase_error_deg: first.map(|f| f.phase_error_deg),
         structured_percent: structured.map(|split| 100.0 * split.structured),
+        response,
     })
+}
+
+/// Gain and lag of the measured harmonic over the command, which stands in the place of the simulation;
+/// `scatter`: standard deviation of the measured amplitude, in the unit of the output.
+///
+/// ```text
+/// sd(a) = sigma sqrt(2 / N),  sd(gain) = sd(a) / a_u,  sd(lag) = sd(a) / a      N samples of white noise sigma
+/// ```
+fn response(command: &FirstHarmonicError, scatter: Option<f64>) -> HarmonicResponse {
+    let [input, output] = [command.simulated, command.measured].map(|own| own.amplitude());
+    HarmonicResponse {
+        gain: output / input,
+        // no minus before zero
+        lag_deg: 0.0 - command.phase_error_deg,
+        std_deviation: scatter.map(|own| [own / input, (own / output).to_degrees()]),
+    }
 }
 
 /// What a model misses before a window, about the mean error inside it, in the unit of the output: the

@@ -39,7 +39,9 @@ mod simulator;
 mod surrogate;
 
 pub use actuator_file::at_work::{ActuatorUse, Deviation, UseError, UseSample};
-pub use actuator_file::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+pub use actuator_file::{
+    GainRule, HarmonicResponse, StoredActuator, StoredChannels, StoredFit, StoredKind,
+};
 pub use diagnosis::{Diagnosis, RunEnergy, diagnose};
 pub use error::DiagnosisError;
 pub use judge::{NotJudged, judged};

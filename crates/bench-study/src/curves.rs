@@ -4,13 +4,14 @@
 use crate::BenchError;
 use crate::figures::{density_csv, diagram_csv};
 use crate::identification::dataset_place;
+use crate::reversals::ForcDiagram;
 use crate::stored::{StoredActuator, StoredChannels, StoredKind};
 use measured_data::{Channel, Channels, CurveData};
 use preisach_dyn::forc::{
     CalibrationPoint, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings, diagram, fit, held_out,
 };
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration};
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, StaticPreisach};
 use report_page::{Sheet, table};
 use serde::Serialize;
 
@@ -69,6 +70,7 @@ pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, BenchErr
         held_out_rms_percent: held_out.rms_percent,
         held_out_worst_percent: held_out.worst_curve_percent,
         written_to: None,
+        page_written_to: None,
     };
     let (content_hash, channels) = (data.content_hash.clone(), data.channels.clone());
     Ok(CurveIdentification { content_hash, channels, data: corrected, fit, result })
@@ -101,15 +103,40 @@ impl CurveIdentification {
     /// # Errors
     /// [`BenchError::Actuator`] if the family is too small for a diagram.
     pub fn figure_files(&self) -> Result<Vec<(String, String)>, BenchError> {
-        let fail =
-            |source| BenchError::Actuator { place: dataset_place(&self.result.dataset), source };
-        let points = diagram(&self.data, SMOOTHING_FACTOR).map_err(fail)?;
-        let (input, unit) = (&self.result.input, format!("_{}", self.channels.output.unit.symbol));
-        let model = &self.fit.model;
+        let points = self.diagram()?.points;
+        let (input, unit) = (&self.result.input, format!("_{}", self.units()[1]));
+        let model = self.model();
         Ok(vec![
             ("forc_diagram.csv".to_owned(), diagram_csv(&points, input)),
             ("density.csv".to_owned(), density_csv(model.grid(), model.map(), input, &unit)),
         ])
+    }
+
+    /// The FORC diagram.
+    ///
+    /// # Errors
+    /// [`BenchError::Actuator`] if the family is too small for one.
+    pub(crate) fn diagram(&self) -> Result<ForcDiagram, BenchError> {
+        let place = || dataset_place(&self.result.dataset);
+        let points = diagram(&self.data, SMOOTHING_FACTOR)
+            .map_err(|source| BenchError::Actuator { place: place(), source })?;
+        let (curves, smoothing) = (self.data.curves.len(), SMOOTHING_FACTOR);
+        Ok(ForcDiagram { id: self.result.title.clone(), curves, smoothing, points })
+    }
+
+    /// Symbols of the units of input and output.
+    pub(crate) fn units(&self) -> [&str; 2] {
+        self.channels.both().map(|channel| channel.unit.symbol)
+    }
+
+    /// The curves, drift taken off.
+    pub(crate) fn data(&self) -> &ForcData {
+        &self.data
+    }
+
+    /// The model.
+    pub(crate) fn model(&self) -> &StaticPreisach {
+        &self.fit.model
     }
 
     /// What `hhc identify` prints.
@@ -144,6 +171,8 @@ pub struct CurvesResult {
     pub held_out_worst_percent: f64,
     /// File the model was written to.
     pub written_to: Option<String>,
+    /// Page of pictures beside it.
+    pub page_written_to: Option<String>,
 }
 
 impl CurvesResult {
@@ -180,6 +209,9 @@ impl CurvesResult {
         ));
         if let Some(path) = &self.written_to {
             sheet.line(format_args!("Model written to {path}"));
+        }
+        if let Some(path) = &self.page_written_to {
+            sheet.line(format_args!("Page written to {path}"));
         }
         sheet.finish()
     }

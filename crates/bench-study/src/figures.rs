@@ -4,6 +4,9 @@
 //! |---|---|
 //! | `loop_RUN.csv` | time, input, measured and simulated output, residual (measured less simulated), 1 for the samples judged and 0 outside the run's window |
 //! | `forc_diagram.csv` | of reversal curves: reversal, input, half-width, centre, density |
+//! | `residual_spectrum.csv` | run, frequency (Hz), rms of the residual's lines in the band about it, noise of repeated cycles |
+//! | `forc_RUN.csv` | of a run that holds reversal curves: as `forc_diagram.csv` |
+//! | `static_density.csv` | of the static Preisach model fitted beside: the columns of `density.csv`, standard deviation of the rise by noise, share of it that comes from the records |
 //! | `density.csv` | half-width and centre of the cells of the Preisach triangle, rise and density, of the model or, if its law has none, of the static Preisach model fitted beside it |
 //!
 //! A record that begins at switch-on has its sample at 0 V first; its times are later by one step.
@@ -11,6 +14,8 @@
 
 use crate::BenchError;
 use crate::identification::BenchIdentification;
+use crate::reversals::of_records;
+use crate::spectra::{spectra, spectra_csv};
 use preisach_dyn::forc::DiagramPoint;
 use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
 use rayon::prelude::*;
@@ -22,11 +27,42 @@ use std::fmt::Write;
 /// [`BenchError::Actuator`] or [`BenchError::Loop`] if the model cannot be simulated on one of its records.
 pub fn figure_files(found: &BenchIdentification) -> Result<Vec<(String, String)>, BenchError> {
     let fail = |source: PreisachError| found.heading.failed(source);
-    let loops: Result<Vec<(String, String)>, PreisachError> =
-        (0..found.records.len()).into_par_iter().map(|number| loop_table(found, number)).collect();
-    let mut files = loops.map_err(fail)?;
+    let simulated = found.simulated()?;
+    let numbers = 0..found.records.len();
+    let mut files: Vec<(String, String)> = numbers
+        .into_par_iter()
+        .map(|number| loop_table(found, number, &simulated[number]))
+        .collect();
     files.extend(density_table(found).map_err(fail)?);
+    let (input, _, unit) = labels(found);
+    let spectra = spectra_csv(&spectra(found, &simulated), &unit);
+    files.push(("residual_spectrum.csv".to_owned(), spectra));
+    for own in of_records(&found.records) {
+        files.push((format!("forc_{}.csv", own.id), diagram_csv(&own.points, &input)));
+    }
+    files.extend(spread_table(found));
     Ok(files)
+}
+
+/// The density of the static model with its deviation, where that was computed.
+fn spread_table(found: &BenchIdentification) -> Option<(String, String)> {
+    let spread = found.identification.density_spread.as_ref()?;
+    let ActuatorLaw::StaticPreisach(model) = &found.identification.static_only.law else {
+        return None;
+    };
+    let (input, _, unit) = labels(found);
+    let cells = density_csv(model.grid(), model.map(), &input, &unit);
+    let of = |values: &[Vec<Option<f64>>]| -> Vec<String> {
+        let text = |own: &Option<f64>| own.map_or_else(String::new, |own| format!("{own:.9e}"));
+        values.iter().flatten().map(text).collect()
+    };
+    let heads = (format!("rise_sd{unit}"), "record_share".to_owned());
+    let columns = of(&spread.rise_std_deg).into_iter().zip(of(&spread.record_share));
+    let mut text = String::new();
+    for (line, (deviation, share)) in cells.lines().zip(std::iter::once(heads).chain(columns)) {
+        let _ = writeln!(text, "{line},{deviation},{share}");
+    }
+    Some(("static_density.csv".to_owned(), text))
 }
 
 /// Labels of input and output, and the unit of the output alone with its underscore.
@@ -41,13 +77,9 @@ fn labels(found: &BenchIdentification) -> (String, String, String) {
 }
 
 /// One record against its simulation, from its first sample on.
-fn loop_table(
-    found: &BenchIdentification,
-    number: usize,
-) -> Result<(String, String), PreisachError> {
+fn loop_table(found: &BenchIdentification, number: usize, simulated: &[f64]) -> (String, String) {
     let record = &found.records[number];
     let zero_deg = found.identification.zero_deg;
-    let simulated = found.model.simulate(&record.voltage_volt, record.time_step_s)?.output_deg;
     let (input, output, unit) = labels(found);
     let mut text =
         format!("time_s,{input},measured_{output},simulated_{output},residual{unit},judged\n");
@@ -63,7 +95,7 @@ fn loop_table(
             "{time_s:.9},{u:.9e},{measured:.9e},{simulated:.9e},{residual:.3e},{judged}"
         );
     }
-    Ok((format!("loop_{}.csv", record.id), text))
+    (format!("loop_{}.csv", record.id), text)
 }
 
 /// The static density of the model, cell by cell; for a law without one that of the static Preisach

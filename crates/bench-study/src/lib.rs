@@ -7,12 +7,18 @@
 //! | identification from reversal curves | [`curves`] |
 //! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
 //! | tables of the figures, for any plotting program | [`figures`] |
+//! | reversal curves within records, and their FORC diagram | [`reversals`] |
+//! | spectra of what a model leaves of its records | [`spectra`] |
+//! | the same as pictures on one page | [`page`] |
 
 pub mod curves;
 mod error;
 pub mod figures;
 mod glance;
 pub mod identification;
+pub mod page;
+pub mod reversals;
+pub mod spectra;
 pub mod stored;
 
 pub use error::BenchError;

@@ -1,7 +1,9 @@
 //! Actuator files: reading with places, writing, and what is unlikely about them.
 
 use crate::BenchError;
-pub use actuator_gap::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
+pub use actuator_gap::{
+    GainRule, HarmonicResponse, StoredActuator, StoredChannels, StoredFit, StoredKind,
+};
 use measured_data::problem::{Fault, Place, Problem, Problems};
 use measured_data::{DataError, RonFile, Source, read_ron, ron_text, write_atomic};
 use preisach_dyn::{ActuatorLaw, Doubt, PreisachError, Weight};

@@ -255,6 +255,7 @@ impl PointsPage<'_> {
             values,
             limit: most.clamp(FULL[0], FULL[1]),
             unit: " sd",
+            ..HeatMap::default()
         }
     }
 

@@ -20,7 +20,8 @@ pub use charts::{
     COLOURS, DrawnCurve, Place3, chart_axis, chart_layout, chart_line, curve_chart, map_chart,
     pair_chart, parallel_chart, trade_chart,
 };
-pub use page::{Charts, folded, page, paragraphs};
+pub use maud::Markup;
+pub use page::{Charts, MADE_HERE, body, folded, grid, heading, page, paragraphs, titled};
 pub use section::Section;
 pub use text::{Column, SCREEN, Sheet, csv_of, table, table_of, unique, wrap};
 

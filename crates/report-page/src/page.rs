@@ -3,6 +3,9 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use plotly::Plot;
 
+/// Text that every page holds and no page of another program.
+pub const MADE_HERE: &str = "<meta name=\"generator\" content=\"rotor-hhc\">";
+
 /// A whole page around its body: style and script inside, nothing loaded from anywhere.
 ///
 /// The library of the charts is part of it where there is any, some 5 MB.
@@ -14,6 +17,7 @@ pub fn page(title: &str, body: &Markup, charts: &Charts) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
+                (PreEscaped(MADE_HERE))
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
                 @if !charts.json.is_empty() { (PreEscaped(plotly_script())) }
@@ -44,6 +48,26 @@ pub fn paragraphs(text: &str) -> Markup {
             }
         }
     }
+}
+
+/// The head of a page: its title, and what it says in a sentence.
+pub fn heading(title: &str, verdict: &str) -> Markup {
+    html! { header { h1 { (title) } p.verdict { (verdict) } } }
+}
+
+/// A section of a class: its heading, lines as [`paragraphs`] takes them, and what follows.
+pub fn titled(class: &str, title: &str, text: &str, parts: &[Markup]) -> Markup {
+    html! { section class=(class) { h2 { (title) } (paragraphs(text)) @for part in parts { (part) } } }
+}
+
+/// Figures side by side; `class` says how wide they are: `grid`, `grid small` or `grid wide`.
+pub fn grid(class: &str, figures: impl IntoIterator<Item = Markup>) -> Markup {
+    html! { div class=(class) { @for own in figures { (own) } } }
+}
+
+/// Parts of a page one below the other, and what it was made by.
+pub fn body(parts: &[Markup], made_by: &str) -> Markup {
+    html! { @for part in parts { (part) } footer { p { (made_by) } } }
 }
 
 /// What a reader unfolds: its title, and what is behind it.

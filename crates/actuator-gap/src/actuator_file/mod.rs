@@ -124,6 +124,31 @@ pub struct StoredFit {
     /// repeated cycles.
     #[serde(default)]
     pub structured_percent: Option<f64>,
+    /// Measured gain and lag at the strongest harmonic of the command; none for transients.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub response: Option<HarmonicResponse>,
+}
+
+/// Gain and lag of a measured output at one harmonic of its command, over the steady cycles judged.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HarmonicResponse {
+    /// Amplitude of the output over that of the command, in the units of the data.
+    pub gain: f64,
+    /// Phase by which the output comes later, deg of that harmonic, -180 to 180.
+    pub lag_deg: f64,
+    /// Standard deviations of both, the lag in deg, for white noise of the size that repeated cycles
+    /// show; none without repeated cycles.
+    pub std_deviation: Option<[f64; 2]>,
+}
+
+impl StoredFit {
+    /// Gain and lag, deg, of the model at the strongest harmonic of the command; none for transients.
+    pub fn model_response(&self) -> Option<[f64; 2]> {
+        let measured = self.response?;
+        let ratio = 1.0 + self.amplitude_error_percent? / 100.0;
+        Some([ratio * measured.gain, measured.lag_deg + self.phase_error_deg?])
+    }
 }
 
 impl StoredActuator {

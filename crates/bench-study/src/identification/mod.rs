@@ -5,7 +5,8 @@ mod summary;
 
 pub use choice::{ModelChoice, Pick, PickReason};
 pub use summary::fit_table;
-pub use summary::{FindingLine, IdentifyResult, ModelLine};
+pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
+pub(crate) use summary::{LEAST_SHARE, fits, section};
 
 use crate::BenchError;
 use crate::stored::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
@@ -17,6 +18,7 @@ use preisach_dyn::identify::{
     RecordWindows, Settings, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
+use rayon::prelude::*;
 
 /// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
 ///
@@ -66,10 +68,7 @@ impl DataHeading {
 
     /// The words and units of messages about the data.
     pub fn subject(&self) -> Subject<'static> {
-        self.channels.as_ref().map_or(Subject::Actuator, |channels| {
-            let unit = |label: &str| Channel::parse(label).map_or("", |c| c.unit.symbol);
-            Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
-        })
+        subject(self.channels.as_ref())
     }
 
     /// A record that cannot be judged, at the place of the data set.
@@ -92,6 +91,14 @@ impl DataHeading {
             _ => BenchError::Actuator { place, source },
         }
     }
+}
+
+/// The words and units of messages about data of some channels; without any, of an actuator.
+fn subject(channels: Option<&StoredChannels>) -> Subject<'static> {
+    channels.map_or(Subject::Actuator, |channels| {
+        let unit = |label: &str| Channel::parse(label).map_or("", |c| c.unit.symbol);
+        Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
+    })
 }
 
 /// An identification with the data it came from.
@@ -265,6 +272,19 @@ pub fn gain(data: &BenchData, base: &Settings) -> (f64, GainRule) {
 }
 
 impl BenchIdentification {
+    /// Output of the model on every record, from its first sample on.
+    ///
+    /// # Errors
+    /// [`BenchError::Actuator`] or [`BenchError::Loop`] if the model cannot be simulated on one of them.
+    pub fn simulated(&self) -> Result<Vec<Vec<f64>>, BenchError> {
+        let simulate = |record: &BenchRecord| {
+            let run = self.model.simulate(&record.voltage_volt, record.time_step_s);
+            run.map(|simulation| simulation.output_deg)
+        };
+        let all: Result<_, PreisachError> = self.records.par_iter().map(simulate).collect();
+        all.map_err(|source| self.heading.failed(source))
+    }
+
     /// The actuator file of this identification.
     pub fn stored(&self) -> StoredActuator {
         StoredActuator {

@@ -1,13 +1,13 @@
 //! What `hhc identify` prints.
 
-use super::{BenchIdentification, PickReason};
+use super::{BenchIdentification, PickReason, subject};
 use crate::stored::{GainRule, StoredChannels, StoredFit};
 use measured_data::significant;
 use preisach_dyn::identify::{
-    Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, RecordUse, Refinement, Settings,
-    Severity, Subject,
+    DensitySpread, Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, NoiseSource,
+    RecordUse, Refinement, Settings, Severity, Subject,
 };
-use report_page::{Sheet, table};
+use report_page::{Section, Sheet, table};
 use serde::Serialize;
 
 impl BenchIdentification {
@@ -38,7 +38,9 @@ impl BenchIdentification {
             models: self.comparison.as_ref().map_or_else(Vec::new, |t| model_lines(t, subject)),
             findings: self.findings(),
             density_determined: found.density_determined,
+            density_spread: self.identification.density_spread.as_ref().map(DensityLine::of),
             written_to,
+            page_written_to: None,
         }
     }
 
@@ -186,8 +188,60 @@ pub struct IdentifyResult {
     pub findings: Vec<FindingLine>,
     /// Numbers of the static density that the training runs determine, of how many.
     pub density_determined: [usize; 2],
+    /// What noise does to the static density; none if that cannot be computed.
+    pub density_spread: Option<DensityLine>,
     /// File the model was written to.
     pub written_to: Option<String>,
+    /// Page of pictures beside it.
+    pub page_written_to: Option<String>,
+}
+
+/// What noise does to the static density, in numbers for all cells.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DensityLine {
+    /// Cells of the Preisach triangle.
+    pub cells: usize,
+    /// Those at their bound, zero.
+    pub at_bound: usize,
+    /// Those of which the records say less than a twentieth: the rest is that of their neighbours.
+    pub from_neighbours: usize,
+    /// Standard deviation of the noise of the slow records, in the unit of the output.
+    pub noise: f64,
+    /// Where it comes from.
+    pub noise_source: NoiseSource,
+}
+
+/// Share of a rise from the records below which it counts as that of its neighbours. A density that is smooth over some
+/// cells has that many parts.
+pub(crate) const LEAST_SHARE: f64 = 0.05;
+
+impl DensityLine {
+    fn of(spread: &DensitySpread) -> Self {
+        let shares = || spread.record_share.iter().flatten();
+        let count = |is_so: fn(&Option<f64>) -> bool| shares().filter(|own| is_so(own)).count();
+        Self {
+            cells: shares().count(),
+            at_bound: count(|own| own.is_none()),
+            from_neighbours: count(|own| own.is_some_and(|share| share < LEAST_SHARE)),
+            noise: spread.noise_deg,
+            noise_source: spread.noise_source,
+        }
+    }
+
+    /// It in words; `unit`: that of the output.
+    pub fn text(&self, unit: &str) -> String {
+        let source = match self.noise_source {
+            NoiseSource::Cycles => "from repeated cycles",
+            NoiseSource::Residual => "what the static model leaves, no cycle being repeated",
+        };
+        format!(
+            "Of {} cells {} are at their bound, zero, and {} have less than a twentieth from the runs; noise {} {unit}, {source}.",
+            self.cells,
+            self.at_bound,
+            self.from_neighbours,
+            significant(self.noise, 2)
+        )
+    }
 }
 
 /// Rows of held-out runs on one screen.
@@ -207,24 +261,12 @@ impl IdentifyResult {
         }
         let mut held_out = of_use(&self.runs, RecordUse::HeldOut);
         held_out.sort_by(|a, b| b.nrmse_percent.total_cmp(&a.nrmse_percent));
-        let trained = of_use(&self.runs, RecordUse::Train);
-        for (label, runs) in [("Held out", &held_out), ("Trained", &trained)] {
-            let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
-            let text = match worst {
-                Some(worst) => format!(
-                    "{} runs, NRMSE {:.2} % rms, at most {:.2} % ({})",
-                    runs.len(),
-                    rms_percent(runs),
-                    worst.nrmse_percent,
-                    worst.id
-                ),
-                None => "no run".to_owned(),
-            };
+        for (label, text) in self.sides() {
             screen.labelled(label, &text);
         }
         if !self.models.is_empty() {
             screen.line("\nModels on the same split, NRMSE in %; * chosen by the training runs left out of its fit");
-            screen.block(&model_table(&self.models, false));
+            screen.block(&as_text(&self.models_compared(false)));
         }
         if !held_out.is_empty() {
             screen.line("\nHeld-out runs, the worst first");
@@ -237,6 +279,9 @@ impl IdentifyResult {
         screen.labelled("NRMSE", "rms error over the standard deviation of the measured output");
         if let Some(written) = self.written() {
             screen.line(&written);
+            if let Some(page) = &self.page_written_to {
+                screen.line(format_args!("Page written to {page}"));
+            }
             screen.line("Every run and parameter: --details");
         }
         screen.screen()
@@ -269,7 +314,7 @@ impl IdentifyResult {
         }
         if !self.parameters.is_empty() {
             sheet.line(format_args!("\nParameters found by output error"));
-            sheet.block(&parameter_table(&self.parameters));
+            sheet.block(&as_text(&self.parameters_found()));
         }
         for (title, use_as) in
             [("Trained runs", RecordUse::Train), ("Held-out runs", RecordUse::HeldOut)]
@@ -296,16 +341,9 @@ impl IdentifyResult {
         }
         if !self.models.is_empty() {
             sheet.line(format_args!("\nModels on the same split, NRMSE in %"));
-            sheet.block(&model_table(&self.models, true));
-            sheet.line(format_args!(
-                "{} Held-out runs take no part in the choice.",
-                if self.models.iter().any(|m| m.cross_validation_percent.is_some()) {
-                    "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %."
-                } else {
-                    "Left out: too few training runs to leave one out. The model marked * is the usual one for such\nruns; nothing in the data chooses it."
-                }
-            ));
-            for failure in failures(&self.models) {
+            sheet.block(&as_text(&self.models_compared(true)));
+            sheet.line(self.how_chosen());
+            for failure in self.not_fitted() {
                 sheet.line(format_args!("{failure}"));
             }
         }
@@ -313,11 +351,17 @@ impl IdentifyResult {
         sheet.line(format_args!(
             "\nThe training runs determine {determined} of {unknowns} numbers of the static density."
         ));
+        if let Some(spread) = &self.density_spread {
+            sheet.line(spread.text(self.units()[1]));
+        }
         for line in &self.findings {
             sheet.line(format_args!("{:?}: {}\n  {}", line.severity, line.message, line.remedy));
         }
         if let Some(written) = self.written() {
             sheet.line(format_args!("{written}"));
+        }
+        if let Some(page) = &self.page_written_to {
+            sheet.line(format_args!("Page written to {page}"));
         }
         sheet.finish()
     }
@@ -330,8 +374,59 @@ impl IdentifyResult {
         self.written_to.as_ref().map(|path| format!("{what} written to {path}"))
     }
 
+    /// Held-out and trained runs, each side in a line.
+    pub(crate) fn sides(&self) -> [(&'static str, String); 2] {
+        [("Held out", RecordUse::HeldOut), ("Trained", RecordUse::Train)].map(|(label, use_as)| {
+            let runs = of_use(&self.runs, use_as);
+            let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
+            let text = match worst {
+                Some(worst) => format!(
+                    "{} runs, NRMSE {:.2} % rms, at most {:.2} % ({})",
+                    runs.len(),
+                    rms_percent(&runs),
+                    worst.nrmse_percent,
+                    worst.id
+                ),
+                None => "no run".to_owned(),
+            };
+            (label, text)
+        })
+    }
+
+    /// Symbols of the units of input and output.
+    pub(crate) fn units(&self) -> [&str; 2] {
+        subject(self.channels.as_ref()).units()
+    }
+
+    /// The models compared; that of a screen is without the levels of their memories.
+    pub(crate) fn models_compared(&self, has_levels: bool) -> Section {
+        model_table(&self.models, has_levels)
+    }
+
+    /// How the choice among the models was made.
+    pub(crate) fn how_chosen(&self) -> String {
+        format!(
+            "{} Held-out runs take no part in the choice.",
+            if self.models.iter().any(|m| m.cross_validation_percent.is_some()) {
+                "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %."
+            } else {
+                "Left out: too few training runs to leave one out. The model marked * is the usual one for such\nruns; nothing in the data chooses it."
+            }
+        )
+    }
+
+    /// Why families have no fit, each reason once.
+    pub(crate) fn not_fitted(&self) -> Vec<String> {
+        failures(&self.models)
+    }
+
+    /// The parameters found by output error.
+    pub(crate) fn parameters_found(&self) -> Section {
+        parameter_table(&self.parameters)
+    }
+
     /// Why the model is the one judged, in words.
-    fn picked(&self) -> &'static str {
+    pub(crate) fn picked(&self) -> &'static str {
         match self.picked_by {
             PickReason::OnlyFit => "the only one fitted",
             PickReason::CrossValidation => "chosen by cross-validation",
@@ -343,8 +438,20 @@ impl IdentifyResult {
     }
 }
 
-fn parameter_table(parameters: &[Estimate]) -> String {
-    table(
+/// A table without title.
+pub(crate) fn section(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Section {
+    let header = header.iter().map(|&head| head.to_owned()).collect();
+    Section { header, rows: rows.into_iter().collect(), ..Section::default() }
+}
+
+/// A table for the terminal.
+fn as_text(own: &Section) -> String {
+    let header: Vec<&str> = own.header.iter().map(String::as_str).collect();
+    table(&header, own.rows.iter().cloned())
+}
+
+fn parameter_table(parameters: &[Estimate]) -> Section {
+    section(
         &["parameter", "value", "std deviation"],
         parameters.iter().map(|p| {
             let deviation = if p.std_deviation.is_finite() {
@@ -359,10 +466,10 @@ fn parameter_table(parameters: &[Estimate]) -> String {
 }
 
 /// The table of models; that of a screen is without the levels of their memories.
-fn model_table(models: &[ModelLine], has_levels: bool) -> String {
+fn model_table(models: &[ModelLine], has_levels: bool) -> Section {
     let levels = usize::from(has_levels);
     let header = ["levels", "left out", "trained", "held out", "worst"];
-    table(
+    section(
         &[&["model"], &header[1 - levels..]].concat(),
         models.iter().map(|m| {
             let model = format!("{}{}", if m.chosen { "* " } else { "" }, m.model);
@@ -414,7 +521,12 @@ fn failures(models: &[ModelLine]) -> Vec<String> {
 ///
 /// `input` heads the column of the input's amplitude.
 pub fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> String {
-    table(
+    as_text(&fits(runs, input))
+}
+
+/// The same without its form.
+pub(crate) fn fits<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> Section {
+    section(
         &[
             "run",
             "Hz",

@@ -100,6 +100,20 @@ pub fn refuse_other_kind(path: &Path, kind: &'static str) -> Result<(), DataErro
     }
 }
 
+/// Refuses to replace a file that does not hold a text which all files of a kind hold. Empty files and what is no regular
+/// file are let pass.
+///
+/// # Errors
+/// [`DataError::WouldOverwriteOther`].
+pub fn refuse_other_text(path: &Path, held: &str, kind: &'static str) -> Result<(), DataError> {
+    let is_empty = path.metadata().is_ok_and(|found| found.len() == 0);
+    let is_own = || Source::read(path).is_ok_and(|source| source.text.contains(held));
+    if !path.is_file() || is_empty || is_own() {
+        return Ok(());
+    }
+    Err(DataError::WouldOverwriteOther { path: path.to_path_buf(), kind })
+}
+
 /// Whether two paths lead to the same file or folder.
 fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
@@ -244,6 +258,11 @@ mod tests {
         assert!(refused("data.csv", b"time_s,command_V\n0,1\n"));
         assert!(refused("bytes", &[0xff, 0x00, 0x80]));
         refuse_other_kind(&place.path().join("none"), "Actuator").unwrap();
+        let of_text = |name: &str, held: &str| {
+            refuse_other_text(&place.path().join(name), held, "page").is_ok()
+        };
+        assert!(of_text("own.ron", "a comment") && of_text("empty", "a") && of_text("none", "a"));
+        assert!(!of_text("data.csv", "a comment") && !of_text("bytes", "a comment"));
     }
 
     #[cfg(unix)]

@@ -103,14 +103,19 @@ fn rise(j: usize, q: usize, scale: f64) -> Row {
     merged(inside.map(|(i, k, sign)| (unknown(i, k), scale * sign)).collect())
 }
 
-/// Simulates a reversal curve from saturation and compares; `span` is the range that errors are
-/// shares of.
-pub fn misfit(model: &StaticPreisach, curve: &ForcCurve, span: f64) -> CurveMisfit {
+/// Outputs of a model along a reversal curve, from saturation.
+pub fn outputs(model: &StaticPreisach, curve: &ForcCurve) -> Vec<f64> {
     let grid = model.grid();
     let top = grid.range().highest_volt();
     let mut memory = PlayMemory::new(grid, top, StartState::FallingFromHighest);
-    let pairs = curve.input.iter().zip(&curve.output);
-    let errors: Vec<f64> = pairs.map(|(&u, &y)| model.apply(&mut memory, u) - y).collect();
+    curve.input.iter().map(|&u| model.apply(&mut memory, u)).collect()
+}
+
+/// Simulates a reversal curve from saturation and compares; `span` is the range that errors are
+/// shares of.
+pub fn misfit(model: &StaticPreisach, curve: &ForcCurve, span: f64) -> CurveMisfit {
+    let pairs = outputs(model, curve).into_iter().zip(&curve.output);
+    let errors: Vec<f64> = pairs.map(|(simulated, measured)| simulated - measured).collect();
     let largest = errors.iter().fold(0.0_f64, |most, error| most.max(error.abs()));
     CurveMisfit {
         reversal_input: curve.reversal_input().unwrap_or(f64::NAN),

@@ -19,7 +19,7 @@ mod fit;
 
 pub use diagram::{DiagramPoint, diagram};
 pub use drift::DriftKind;
-pub use fit::{CurveMisfit, ForcFit, ForcSettings, HeldOutCurves, fit, held_out, misfit};
+pub use fit::{CurveMisfit, ForcFit, ForcSettings, HeldOutCurves, fit, held_out, misfit, outputs};
 
 use crate::PreisachError;
 use crate::check::{check_count, check_finite, check_positive, check_that, extremes, not_finite};

@@ -19,6 +19,7 @@ pub use families::comparison::{
 };
 pub use families::family::Family;
 pub use fit::compare::RecordFit;
+pub use fit::density::{DensitySpread, NoiseSource};
 pub use fit::output_error::{Covariance, Estimate};
 pub use fit::refine::{Refinement, RefinementOutcome};
 pub use fit::stream::StaticAccumulator;
@@ -38,7 +39,7 @@ use fit::preisach::{RateFit, fit_linear, trained_range};
 use fit::refine::Refined;
 use fit::roles::Bench;
 use fit::training::Training;
-use fit::{compare, static_fit};
+use fit::{compare, density, static_fit};
 use rotor_base::mean_square;
 
 /// What the identification says about one record.
@@ -68,6 +69,8 @@ pub struct Identification {
     pub dynamic: ActuatorModel,
     /// Baseline: the static Preisach model fitted to the same quasi-static records.
     pub static_only: ActuatorModel,
+    /// What the noise of these records does to its density; none if that cannot be computed.
+    pub density_spread: Option<DensitySpread>,
     /// Baseline: the linear gain fitted to the same quasi-static records.
     pub linear: ActuatorModel,
     /// Output of the records that is zero flap angle of the models, deg: a model reproduces
@@ -117,6 +120,7 @@ pub fn identify(
     let wrap = |law| ActuatorModel { trained, ..settings.actuator_of(law) };
     let linear = wrap(ActuatorLaw::Linear(fit_linear(slow)));
     let g0_deg = static_fit::as_measured(&training)?;
+    let density_spread = density::spread(&training, &g0_deg);
     let statics = StaticPreisach::new(grid, g0_deg.clone())?;
     let static_only = wrap(ActuatorLaw::StaticPreisach(statics));
     let rate = if fast.is_empty() {
@@ -162,6 +166,7 @@ pub fn identify(
     Ok(Identification {
         dynamic: rigged(dynamic),
         static_only: rigged(static_only),
+        density_spread,
         linear: rigged(linear),
         zero_deg: bench.zero_deg(&training),
         records: reports,

@@ -2,6 +2,7 @@
 
 mod chain;
 mod common;
+mod density;
 mod dynamics;
 mod forc;
 mod hysteresis;

@@ -21,6 +21,8 @@ pub struct HeatMap {
     pub limit: f64,
     /// Unit behind a value.
     pub unit: &'static str,
+    /// Whether cells are as high as they are wide: a map of a plane.
+    pub is_square: bool,
 }
 
 /// Width of a map and of the names of its rows at most, height of a row, px.
@@ -34,6 +36,8 @@ const MOST_COLUMNS: usize = 90;
 /// Characters of a name of a row, and width of one of a column, px.
 const NAME_LENGTH: usize = 20;
 const LABEL: f64 = 44.0;
+/// Height of a name of a row, px.
+const NAME_HEIGHT: f64 = 12.0;
 
 impl HeatMap {
     /// The map as a figure.
@@ -43,16 +47,23 @@ impl HeatMap {
         let longest = self.rows.iter().map(|own| own.chars().count()).max().unwrap_or(0);
         let left = (6.6 * longest.min(NAME_LENGTH) as f64 + 8.0).min(NAMES);
         let width = (WIDTH - left - 4.0) / count as f64;
+        let row = if self.is_square { width } else { ROW };
         let mut drawing = Drawing::default();
+        // names of rows where there is room for them
+        let mut free = f64::NEG_INFINITY;
         for (r, (name, values)) in self.rows.iter().zip(&self.values).enumerate() {
-            let y = ROW * r as f64;
-            drawing.text([left - 4.0, y + 13.0], "end", &clipped(name, NAME_LENGTH));
+            let y = row * r as f64;
+            let base = y + 0.5 * row + 4.0;
+            if base - free >= NAME_HEIGHT {
+                drawing.text([left - 4.0, base], "end", &clipped(name, NAME_LENGTH));
+                free = base;
+            }
             for (k, part) in values.chunks(group).enumerate() {
-                let of = group * k;
-                self.cell(&mut drawing, (name, of, part), [left + width * k as f64, y, width]);
+                let corner = [left + width * k as f64, y];
+                self.cell(&mut drawing, (name, group * k, part), (corner, [width, row - 1.0]));
             }
         }
-        let below = ROW * self.rows.len() as f64 + 12.0;
+        let below = row * self.rows.len() as f64 + 12.0;
         // names of columns where there is room for them
         let mut free = left;
         for (k, name) in self.columns.iter().step_by(group).enumerate() {
@@ -75,17 +86,16 @@ impl HeatMap {
         }
     }
 
-    /// A cell of the largest of some values, the first of which is of column `of`; left, top, width.
+    /// A cell of the largest of some values, the first of which is of column `of`; left upper corner, width and height.
     fn cell(
         &self,
         drawing: &mut Drawing,
         (row, of, values): (&str, usize, &[Option<f64>]),
-        [x, y, width]: [f64; 3],
+        ([x, y], [width, height]): ([f64; 2], [f64; 2]),
     ) {
         let each = values.iter().enumerate().filter_map(|(k, own)| Some((k, (*own)?)));
         let each = each.filter(|own| own.1.is_finite());
         let largest = each.max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-        let height = ROW - 1.0;
         let Some((k, value)) = largest else {
             drawing.bar([x, y], [width, height], "cell");
             return;
@@ -94,10 +104,10 @@ impl HeatMap {
         let full = (value.abs() / self.limit).min(1.0);
         let told = format!("{}, {row}: {}{}", self.columns[of + k], short(value), self.unit);
         let at = format_args!(
-            "x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height}\" class=\"{class}\" fill-opacity=\"{full:.2}\""
+            "x=\"{x:.1}\" y=\"{y:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" class=\"{class}\" fill-opacity=\"{full:.2}\""
         );
         drawing.element("rect", at, &told);
-        if width >= WRITTEN {
+        if width >= WRITTEN && !self.is_square {
             // no minus before what rounds to zero
             let text = format!("{:.1}", if value.abs() < 0.05 { 0.0 } else { value });
             drawing.text([x + 0.5 * width, y + 12.5], "mid", &text);

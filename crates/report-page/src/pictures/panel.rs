@@ -53,6 +53,8 @@ pub struct Panel {
     pub axes: [String; 2],
     /// Whether both axes have one scale, as in a plane of cosine and sine.
     pub is_equal: bool,
+    /// Whether x and y have a logarithmic scale; points that are not above zero there are left out.
+    pub is_log: [bool; 2],
     /// What is drawn, the first below.
     pub series: Vec<Series>,
 }
@@ -71,7 +73,8 @@ impl Panel {
     pub fn markup(&self) -> Markup {
         let height = if self.is_equal { EQUAL_HEIGHT } else { HEIGHT };
         let [left, right, top, bottom] = BORDERS;
-        let points = || self.series.iter().flat_map(|own| &own.points);
+        let series: Vec<Series> = self.series.iter().map(|own| own.scaled(self.is_log)).collect();
+        let points = || series.iter().flat_map(|own| &own.points);
         let mut x = Scale::of(points().map(|own| own[0]), [left, WIDTH - right]);
         let mut y = Scale::of(points().map(|own| own[1]), [height - bottom, top]);
         if self.is_equal {
@@ -80,7 +83,7 @@ impl Panel {
         }
         let mut drawing = Drawing::default();
         self.frame(&mut drawing, x, y);
-        for series in &self.series {
+        for series in &series {
             series.draw(&mut drawing, x, y);
         }
         html! {
@@ -96,15 +99,14 @@ impl Panel {
 
     fn frame(&self, drawing: &mut Drawing, x: Scale, y: Scale) {
         let ([left, right], [below, above]) = (x.at, y.at);
-        for tick in x.ticks() {
-            let at = x.place(tick);
-            drawing.line([at, below], [at, above], if tick == 0.0 { "zero" } else { "rule" });
-            drawing.text([at, below + 13.0], "soft mid", &short(tick));
+        let class = |value: f64| if value == 0.0 { "zero" } else { "rule" };
+        for (at, value) in x.named_ticks(self.is_log[0]) {
+            drawing.line([at, below], [at, above], class(value));
+            drawing.text([at, below + 13.0], "soft mid", &short(value));
         }
-        for tick in y.ticks() {
-            let at = y.place(tick);
-            drawing.line([left, at], [right, at], if tick == 0.0 { "zero" } else { "rule" });
-            drawing.text([left - 4.0, at + 3.5], "soft end", &short(tick));
+        for (at, value) in y.named_ticks(self.is_log[1]) {
+            drawing.line([left, at], [right, at], class(value));
+            drawing.text([left - 4.0, at + 3.5], "soft end", &short(value));
         }
         let middle = f64::midpoint(left, right);
         drawing.text([middle, below + 28.0], "soft mid", &self.axes[0]);
@@ -114,6 +116,13 @@ impl Panel {
 }
 
 impl Series {
+    /// It with the logarithms of its points where an axis is logarithmic.
+    fn scaled(&self, is_log: [bool; 2]) -> Self {
+        let of = |value: f64, is_log: bool| if is_log { value.log10() } else { value };
+        let points = self.points.iter().map(|own| [of(own[0], is_log[0]), of(own[1], is_log[1])]);
+        Self { points: points.collect(), ..self.clone() }
+    }
+
     fn draw(&self, drawing: &mut Drawing, x: Scale, y: Scale) {
         let is_finite = |own: &[f64; 2]| own.iter().all(|value| value.is_finite());
         let place = |own: &[f64; 2]| [x.place(own[0]), y.place(own[1])];
@@ -228,6 +237,22 @@ mod tests {
         let [x0, y0, x1, y1] = places[..] else { panic!("{text}") };
         assert!(((x1 - x0) / 10.0 + (y1 - y0)).abs() < 0.1, "{places:?}");
         assert!(text.contains("<title>point &lt;1&gt;</title>"), "{text}");
+    }
+
+    #[test]
+    fn decades_are_alike_on_a_logarithmic_axis() {
+        let series =
+            Series { points: [0.1, 1.0, 10.0, 0.0].map(|v| [v, v]).into(), ..Series::default() };
+        let panel = Panel { is_log: [true, false], series: vec![series], ..Panel::default() };
+        let text = panel.markup().into_string();
+        let places: Vec<f64> = text
+            .split("cx=\"")
+            .skip(1)
+            .map(|own| own.split('"').next().unwrap().parse().unwrap())
+            .collect();
+        let [a, b, c] = places[..] else { panic!("{text}") };
+        assert!(((b - a) - (c - b)).abs() < 0.2, "{places:?}");
+        assert!(text.contains(">0.1<") && text.contains(">10<"), "{text}");
     }
 
     #[test]

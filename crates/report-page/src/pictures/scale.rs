@@ -52,6 +52,35 @@ impl Scale {
     }
 }
 
+/// Ticks of a logarithmic scale at most.
+const MOST_TICKS: usize = 7;
+
+impl Scale {
+    /// Places of the ticks, px, with their values; of a logarithmic scale its values are logarithms.
+    pub(super) fn named_ticks(&self, is_log: bool) -> Vec<(f64, f64)> {
+        let named = |tick: f64| (self.place(tick), if is_log { 10.0_f64.powf(tick) } else { tick });
+        if !is_log {
+            return self.ticks().into_iter().map(named).collect();
+        }
+        // whole decades where they are many, else 1, 2 and 5 of each
+        let decades = |step: f64| {
+            let first = (self.low / step).ceil();
+            (0..=MOST_TICKS).map(move |k| (first + k as f64) * step)
+        };
+        let within = |tick: &f64| *tick <= self.high;
+        let fine = |tick: f64| [1.0_f64, 2.0, 5.0].map(|own| tick + own.log10());
+        let span = self.high - self.low;
+        let ticks: Vec<f64> = if span < 2.0 {
+            let from = self.low.floor() - 1.0;
+            let all = (0..5).map(|k| from + f64::from(k)).flat_map(fine);
+            all.filter(|tick| *tick >= self.low).filter(within).collect()
+        } else {
+            decades((span / MOST_TICKS as f64).ceil()).take_while(within).collect()
+        };
+        ticks.into_iter().map(named).collect()
+    }
+}
+
 /// A value in as many digits as an interval of a width asks for: two of the width.
 pub(super) fn resolved(value: f64, width: f64) -> String {
     // the exponent as the language prints it

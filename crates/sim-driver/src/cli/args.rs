@@ -214,16 +214,16 @@ pub struct IdentifyArgs {
     /// Folder with dataset.ron and its records.
     #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
-    /// Actuator file to write.
+    /// Actuator file to write; the page of its pictures is written beside it as ACTUATOR.html.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
     pub output: PathBuf,
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
-    /// Folder for the data of the figures: loops with residuals, density; CSV.
+    /// Folder for the data of the figures: loops with residuals, spectra, density, reversal curves; CSV.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
-    /// Replace the file to write even if it is no actuator file.
+    /// Replace the files to write even if they are no actuator file and no page of hhc.
     #[arg(long)]
     pub force: bool,
     /// Model to judge and to write; all of them are fitted and compared in any case.

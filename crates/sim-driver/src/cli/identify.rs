@@ -5,8 +5,8 @@ use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::actuator_use::{samples_csv, used};
 use crate::files::{
-    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, write_atomic,
-    write_folder,
+    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
+    refuse_other_text, write_atomic, write_folder,
 };
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
@@ -18,10 +18,12 @@ use bench_study::figures::figure_files;
 use bench_study::identification::{
     BenchIdentification, IdentifyResult, MODELS_COMPARED, identify_bench, identify_loops,
 };
+use bench_study::page::{bench_page, curves_page};
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::EvenRecord;
 use preisach_dyn::identify::Settings;
-use std::path::PathBuf;
+use report_page::MADE_HERE;
+use std::path::{Path, PathBuf};
 
 impl Printable for IdentifyResult {
     fn text(&self) -> String {
@@ -46,21 +48,35 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     };
     refuse_inside(&args.bench, &args.output)?;
     refuse_inputs(args.start.as_deref(), Some(&args.output))?;
+    let page_path = page_path(&args.output);
+    if let Some(path) = &page_path {
+        refuse_inside(&args.bench, path)?;
+    }
     if !args.force {
         refuse_other_kind(&args.output, "Actuator")?;
+        if let Some(path) = &page_path {
+            refuse_other_text(path, MADE_HERE, "page of hhc")?;
+        }
     }
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
     let progress = Progress::new(MODELS_COMPARED);
     progress.begin(0, &format!("identifying from {} runs", data.run_count()));
-    let written = Some(args.output.display().to_string());
-    let (stored, text, figures) = match &data {
+    let [written, page_written_to] = [Some(&args.output), page_path.as_ref()]
+        .map(|path| path.map(|path| path.display().to_string()));
+    let found = match &data {
         DataSet::Curves(curves) => {
             let found = identify_curves(curves);
             progress.finish();
             let found = found?;
             let figures = args.figures.as_ref().map(|_| found.figure_files()).transpose()?;
-            (found.stored(), found.summary(written).render(args.format.form())?, figures)
+            let result = CurvesResult { page_written_to, ..found.summary(written) };
+            Identified {
+                stored: found.stored(),
+                page: curves_page(&found, &result),
+                text: result.render(args.format.form())?,
+                figures,
+            }
         }
         DataSet::Sweep(sweep) => {
             let place = Place::file(format!("{}/dataset.ron", sweep.folder)).field("kind");
@@ -71,20 +87,30 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         }
         DataSet::Bench(bench) => {
             let found = identify_bench(bench, &base, Some(&|| progress.step()));
-            record_files(&picked(found, args, &progress)?, written, args)?
+            record_files(&picked(found, args, &progress)?, [written, page_written_to], args)?
         }
         DataSet::Loops(loops) => {
             let found = identify_loops(loops, &base, Some(&|| progress.step()));
-            record_files(&picked(found, args, &progress)?, written, args)?
+            record_files(&picked(found, args, &progress)?, [written, page_written_to], args)?
         }
     };
     let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
-    warn(&actuator_warnings(&stored, place), args.format.form());
-    write_actuator(&stored, &args.output)?;
-    if let (Some(folder), Some(figures)) = (&args.figures, figures) {
+    warn(&actuator_warnings(&found.stored, place), args.format.form());
+    write_actuator(&found.stored, &args.output)?;
+    if let Some(path) = &page_path {
+        write_atomic(path, found.page.as_bytes())?;
+    }
+    if let (Some(folder), Some(figures)) = (&args.figures, found.figures) {
         write_texts(folder, figures)?;
     }
-    print(&text)
+    print(&found.text)
+}
+
+/// The page beside a model file; none beside a pipe or a device, and where the model itself has its name.
+fn page_path(model: &Path) -> Option<PathBuf> {
+    let is_other = model.exists() && !model.is_file();
+    let page = model.with_extension("html");
+    (!is_other && page != model).then_some(page)
 }
 
 pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
@@ -137,16 +163,28 @@ fn put_to_work(
     print(&own.render(format)?)
 }
 
-/// Model file, printed text and tables of the figures.
-type IdentifiedFiles = (StoredActuator, String, Option<Vec<(String, String)>>);
+/// What an identification writes and prints.
+struct Identified {
+    stored: StoredActuator,
+    page: String,
+    text: String,
+    figures: Option<Vec<(String, String)>>,
+}
 
 fn record_files(
     found: &BenchIdentification,
-    written: Option<String>,
+    [written, page_written_to]: [Option<String>; 2],
     args: &IdentifyArgs,
-) -> Result<IdentifiedFiles, SimError> {
+) -> Result<Identified, SimError> {
     let figures = args.figures.as_ref().map(|_| figure_files(found)).transpose()?;
-    Ok((found.stored(), found.summary(written).render(args.format.form())?, figures))
+    let result = IdentifyResult { page_written_to, ..found.summary(written) };
+    let page = bench_page(found, &result)?;
+    Ok(Identified {
+        stored: found.stored(),
+        page,
+        text: result.render(args.format.form())?,
+        figures,
+    })
 }
 
 /// The identification with the model that is wanted in place.

@@ -423,7 +423,7 @@ fn a_case_whose_data_are_not_there() {
 }
 
 /// The measured files in `fixtures/measured`.
-fn measured(path: &str) -> String {
+pub(crate) fn measured(path: &str) -> String {
     format!("{}/../../fixtures/measured/{path}", env!("CARGO_MANIFEST_DIR"))
 }
 
@@ -539,7 +539,15 @@ fn a_generic_loop_is_identified_in_its_own_units() {
     let text = place.hhc(&[&args[..4], &["--details"]].concat()).done();
     assert!(text.contains("Model  field_Oe to moment_emu, field_Oe -15 to 145 (from"), "{text}");
     let figures = place.listing().into_iter().filter(|f| f.starts_with("figures/"));
-    let expected = ["density", "loop_five", "loop_one_large", "loop_one_small", "loop_slow"];
+    let expected = [
+        "density",
+        "loop_five",
+        "loop_one_large",
+        "loop_one_small",
+        "loop_slow",
+        "residual_spectrum",
+        "static_density",
+    ];
     assert!(figures.eq(expected.map(|f| format!("figures/{f}.csv"))));
     let table = place.read("figures/loop_five.csv");
     let mut lines = table.lines();

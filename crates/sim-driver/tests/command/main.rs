@@ -10,6 +10,7 @@ mod diagnosis_page;
 mod disk;
 mod fly;
 mod identify;
+mod identify_page;
 mod import;
 mod lab;
 mod measured;

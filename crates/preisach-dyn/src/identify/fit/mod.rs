@@ -1,6 +1,7 @@
 //! Fits to prepared records: linear programs, rate maps, output error, their validation.
 
 pub(crate) mod compare;
+pub(crate) mod density;
 pub(crate) mod output_error;
 pub(crate) mod passage;
 pub(crate) mod preisach;

@@ -6,6 +6,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{
     DefaultSettingsBuilder, DefaultSolver, IPSolver, NonnegativeConeT, SolverStatus, ZeroConeT,
 };
+use nalgebra::DMatrix;
 
 /// Residuals and gap below which a program that stopped early is solved. The weights of the rows sum to one: such a gap is
 /// 0.1 % of their rms.
@@ -81,6 +82,17 @@ impl LeastSquaresProgram {
         for &(column, a) in row {
             self.right[column] += weight * a * target;
         }
+    }
+
+    /// `sum w a a'` of the rows added so far.
+    pub(crate) fn normal_matrix(&self) -> DMatrix<f64> {
+        let at = |i: usize, j: usize| self.normal[packed(i.min(j), i.max(j))];
+        DMatrix::from_fn(self.unknowns, self.unknowns, at)
+    }
+
+    /// `sum w a b` of the rows added so far.
+    pub(crate) fn right(&self) -> &[f64] {
+        &self.right
     }
 
     /// Numbers kept: the normal equations.

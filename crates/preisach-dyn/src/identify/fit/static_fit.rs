@@ -6,6 +6,7 @@ use crate::identify::records::prepared::Prepared;
 use crate::identify::records::record::spread;
 use crate::laws::play_map::split;
 use crate::{PlayMap, PreisachError, PreisachGrid};
+use std::ops::Range;
 
 /// `G0` of the density `mu0 >= 0` that fits targets in the least squares sense.
 ///
@@ -54,8 +55,23 @@ const BETWEEN_WIDTHS: f64 = 1e-5;
 /// Numbers of a play that a loop and the rise to it determine, at most.
 const OF_A_LOOP: usize = 3;
 
+/// What is alike in the density that a program of samples leads to, and with which weight: `smoothness` between sides, but
+/// where the samples are of one loop alone.
+pub(crate) fn smoothed(
+    samples: &LeastSquaresProgram,
+    levels: usize,
+    smoothness: f64,
+) -> (Neighbours, f64) {
+    let of_a_loop = OF_A_LOOP * levels;
+    if samples.rank(RANK, of_a_loop + 1) > of_a_loop {
+        (Neighbours::Sides, smoothness)
+    } else {
+        (Neighbours::EqualWidth, EQUAL_WIDTH)
+    }
+}
+
 /// The samples of the slow records, the weights of all together 1, without targets.
-fn normal<'a>(training: &'a Training) -> &'a LeastSquaresProgram {
+pub(crate) fn normal<'a>(training: &'a Training) -> &'a LeastSquaresProgram {
     training.slow_once.normal.get_or_init(|| {
         let unknowns = Unknowns::new(&training.grid);
         let mut program = LeastSquaresProgram::new(unknowns.count);
@@ -72,7 +88,7 @@ fn normal<'a>(training: &'a Training) -> &'a LeastSquaresProgram {
 }
 
 /// Weight of a sample of a slow record: records weigh alike.
-fn weight(training: &Training, record: &Prepared) -> f64 {
+pub(crate) fn weight(training: &Training, record: &Prepared) -> f64 {
     1.0 / (training.slow.len() * record.samples.len()) as f64
 }
 
@@ -170,12 +186,7 @@ impl Unknowns {
         smoothness: f64,
         variance: f64,
     ) -> Result<PlayMap, PreisachError> {
-        let of_a_loop = OF_A_LOOP * grid.levels();
-        let (neighbours, weight) = if program.rank(RANK, of_a_loop + 1) <= of_a_loop {
-            (Neighbours::EqualWidth, EQUAL_WIDTH)
-        } else {
-            (Neighbours::Sides, smoothness)
-        };
+        let (neighbours, weight) = smoothed(&program, grid.levels(), smoothness);
         let unit = unit(variance.sqrt());
         program.count_targets_in(unit);
         program.scale(unit * unit / variance);
@@ -211,13 +222,24 @@ impl Unknowns {
         Self { starts, count }
     }
 
+    /// Numbers of the unknowns of every play, its lowest knot first.
+    pub(crate) fn plays(&self) -> impl Iterator<Item = Range<usize>> {
+        let ends = self.starts[1..].iter().copied().chain([self.count]);
+        self.starts.iter().copied().zip(ends).map(|(start, end)| start..end)
+    }
+
+    /// Number of the rise of play `j` between its knots `k` and `k + 1`, where rises are the unknowns.
+    pub(crate) fn cell(&self, j: usize, k: usize) -> usize {
+        self.node(j, k + 1)
+    }
+
     /// Number of `v_jk`, `k >= 1`.
     fn node(&self, j: usize, k: usize) -> usize {
         self.starts[j] + k - 1
     }
 
     /// `scale (v_j,k+1 - v_jk)` as a row.
-    fn rise(&self, j: usize, k: usize, scale: f64) -> Row {
+    pub(crate) fn rise(&self, j: usize, k: usize, scale: f64) -> Row {
         let mut row = Row::new();
         if k > 0 {
             row.push((self.node(j, k), -scale));
