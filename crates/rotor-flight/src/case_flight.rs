@@ -1,8 +1,6 @@
 //! The flight that a case describes.
 
-use crate::{
-    FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath, fly,
-};
+use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath, fly};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
@@ -101,8 +99,8 @@ pub fn fly_case(
     let path = path_of(case, values)?;
     done();
     let (low, high) = case.actuator.range_volt;
-    let range_volt = VoltageRange::new(low, high)
-        .map_err(|source| FlightError::Actuator { flap: 0, source })?;
+    let range_volt =
+        VoltageRange::new(low, high).map_err(|source| FlightError::Actuator { flap: 0, source })?;
     let model = ActuatorModel { range_volt, ..model.clone() };
     let flight = flight_of(case, values, &path, &model)?;
     let start = path.loads(flight.state_at(0.0), &[])?;

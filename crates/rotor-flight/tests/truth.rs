@@ -100,11 +100,12 @@ fn loads_in_time_are_those_of_the_nonlinear_rotor() {
                 rotor.with_flaps(rad).unwrap().hub.harmonic(nb)
             })
             .collect();
-        let against = |advance_ratio: f64, of: &dyn Fn(&[HarmonicSeries]) -> Vec<HarmonicSeries>| {
-            let state = FlightState { advance_ratio, thrust_share: 0.0 };
-            let found = motions.iter().map(|own| path.loads(state, &of(own)).unwrap());
-            worst(&found.zip(truth.iter().copied()).collect::<Vec<_>>(), j0)
-        };
+        let against =
+            |advance_ratio: f64, of: &dyn Fn(&[HarmonicSeries]) -> Vec<HarmonicSeries>| {
+                let state = FlightState { advance_ratio, thrust_share: 0.0 };
+                let found = motions.iter().map(|own| path.loads(state, &of(own)).unwrap());
+                worst(&found.zip(truth.iter().copied()).collect::<Vec<_>>(), j0)
+            };
         let whole = against(advance_ratio, &<[HarmonicSeries]>::to_vec);
         let largest = truth.iter().map(size).fold(0.0, f64::max) / j0;
         let last = size(&truth[truth.len() - 1]) / j0;

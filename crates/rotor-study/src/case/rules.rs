@@ -20,7 +20,8 @@ const NO_LOAD_WEIGHTED: &str =
     "every load weight is 0, so there is nothing to reduce; 1 is the paper's identity weight";
 const NEEDS_FLAPS: &str =
     "the blade has no flap to control with; give flaps, or write harmonics: []";
-const FLIES_NONE_OR_TWICE: &str = "give each controller once, at least one of them: controllers: [Fixed, Scheduled, Adaptive]";
+const FLIES_NONE_OR_TWICE: &str =
+    "give each controller once, at least one of them: controllers: [Fixed, Scheduled, Adaptive]";
 const FLIES_WITHOUT_FLAPS: &str =
     "the blade has no flap to control with; give flaps, or leave the flight out";
 const NEEDS_THRUST: &str = "controls that are given have no thrust to step; trim: Propulsive or WindTunnel, or leave thrust_step out";
@@ -206,8 +207,9 @@ fn check_set(check: &mut Checker, list: &str, set: &[usize], highest: usize) {
         let remedy = "the paper controls 2, 3, 4 (and 5) per rev";
         check.count(&field, harmonic, (1, highest), remedy);
         if set[..j].contains(&harmonic) {
-            let message =
-                format!("`{harmonic}` is used already at {list}; give every harmonic of a set once");
+            let message = format!(
+                "`{harmonic}` is used already at {list}; give every harmonic of a set once"
+            );
             check.broken(&field, message);
         }
     }

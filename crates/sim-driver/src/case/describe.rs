@@ -7,11 +7,11 @@ use crate::output::wrap;
 use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
-    Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapValues, FlightValues, FreeWakeValues,
-    HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile, MeasuredFiles, MeasuredSection,
-    ModeNumbers, PitchHarmonic, PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range,
-    ResponseValues, RotorValues, Section, StructureValues, ThrustStep, ToleranceValues, UncertainField, Value,
-    Visitor, WindTunnelTrim,
+    Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapValues,
+    FlightValues, FreeWakeValues, HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile,
+    MeasuredFiles, MeasuredSection, ModeNumbers, PitchHarmonic, PrescribedCirculation,
+    PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues, Section, StructureValues,
+    ThrustStep, ToleranceValues, UncertainField, Value, Visitor, WindTunnelTrim,
 };
 use serde::Serialize;
 use std::fmt::Write as _;

@@ -18,7 +18,10 @@ pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     warn(&found.warnings, args.format);
     print(&found.render(args.format)?)?;
     if args.format != Format::Json {
-        print(&format!("\nEvery cycle in {0}/flight.csv, pictures in {0}/flight.html\n", out.display()))?;
+        print(&format!(
+            "\nEvery cycle in {0}/flight.csv, pictures in {0}/flight.html\n",
+            out.display()
+        ))?;
     }
     Ok(())
 }

@@ -13,8 +13,8 @@ mod section;
 mod sweep;
 
 pub use args::{
-    Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, FlyArgs, IdentifyArgs, ImportArgs, InflowOverride,
-    ModesArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
+    Cli, Command, CompareArgs, DetailArgs, DiagnoseArgs, FlyArgs, IdentifyArgs, ImportArgs,
+    InflowOverride, ModesArgs, RunArgs, SectionArgs, StudyArgs, WakeArgs,
 };
 
 use crate::SimError;

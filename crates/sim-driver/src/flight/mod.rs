@@ -97,7 +97,9 @@ fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
         format!("Failure: flap {flap} stuck at {stuck_deg} deg from {at_s} s on; the controller is {told}.")
     }));
     let (noise, seed) = (values.noise_percent, values.seed);
-    notes.push(format!("Noise: {noise} % of the loads at the start in each revolution, seed {seed}."));
+    notes.push(format!(
+        "Noise: {noise} % of the loads at the start in each revolution, seed {seed}."
+    ));
     notes
 }
 
@@ -153,9 +155,12 @@ fn fields(of: &FlightResult, point: &FlightPoint) -> Vec<(String, f64)> {
     for (flap, control) in pairs {
         let of_flap = |name: String| format!("flap{}_{name}", flap + 1);
         let each = of.harmonics.iter().zip(control.chunks_exact(2));
-        fields.extend(each.map(|(n, own)| (of_flap(format!("{n}_per_rev_V")), own[0].hypot(own[1]))));
+        fields
+            .extend(each.map(|(n, own)| (of_flap(format!("{n}_per_rev_V")), own[0].hypot(own[1]))));
         let [low, high] = point.volt[flap];
-        fields.extend([("lowest_V", low), ("highest_V", high)].map(|(n, v)| (of_flap(n.to_owned()), v)));
+        fields.extend(
+            [("lowest_V", low), ("highest_V", high)].map(|(n, v)| (of_flap(n.to_owned()), v)),
+        );
         let moved = point.flap_deg[flap].iter().enumerate();
         fields.extend(moved.map(|(k, deg)| (of_flap(format!("{}_per_rev_deg", k + 1)), *deg)));
     }

@@ -26,7 +26,8 @@ fn rows(csv: &str) -> Vec<std::collections::BTreeMap<&str, &str>> {
 fn a_flight_is_told_drawn_and_tabled() {
     let place = flying(FLIGHT);
     let said = place.hhc(&["fly", "case.ron"]).done();
-    for part in ["mean J/J0", "settles in", "fixed", "scheduled", "adaptive", "Truth: ", "not told"] {
+    for part in ["mean J/J0", "settles in", "fixed", "scheduled", "adaptive", "Truth: ", "not told"]
+    {
         assert_eq!(said.contains(part), part != "not told", "{part}: {said}");
     }
     assert!(said.lines().all(|line| line.chars().count() <= 100), "{said}");
@@ -40,7 +41,10 @@ fn a_flight_is_told_drawn_and_tabled() {
         assert!(number(start + 15, "j_over_j0") < 0.9, "{}", rows[start + 15]["j_over_j0"]);
         let [before, after] = [start + 9, start + 12];
         let load = "fz_4_per_rev_without_control_N";
-        assert!((number(after, load) / number(before, load) - 1.0).abs() > 0.02, "the step is felt");
+        assert!(
+            (number(after, load) / number(before, load) - 1.0).abs() > 0.02,
+            "the step is felt"
+        );
         assert!(number(start + 15, "flap2_2_per_rev_deg") > 0.05);
         assert!(number(start + 25, "flap2_2_per_rev_deg") == 0.0, "it is stuck");
         assert!(number(start + 25, "flap1_2_per_rev_deg") > 0.05, "the other one goes on");
@@ -90,7 +94,10 @@ fn flights_that_cannot_be_are_refused() {
         ("failed_flap: (flap: 3)", ["flight.failed_flap.flap", "expected 1 to 2"]),
         ("failed_flap: (flap: 0)", ["flight.failed_flap.flap", "expected 1 to 2"]),
         ("failed_flap: (at_s: -1)", ["flight.failed_flap.at_s", "expected 0 to 60 s"]),
-        ("failed_flap: (stuck_deg: 90)", ["flight.failed_flap.stuck_deg", "expected -20 to 20 deg"]),
+        (
+            "failed_flap: (stuck_deg: 90)",
+            ["flight.failed_flap.stuck_deg", "expected -20 to 20 deg"],
+        ),
         ("noise_percent: -3", ["flight.noise_percent", "expected 0 to 100"]),
         ("window_rev: 0", ["flight.window_rev", "expected 1 to 100"]),
         ("gain: 2", ["flight.gain", "expected 0.001 to 1"]),
