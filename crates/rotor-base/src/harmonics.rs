@@ -1,6 +1,6 @@
 //! Harmonics of periodic signals.
 
-use crate::BaseError;
+use crate::{BaseError, Number};
 use std::f64::consts::TAU;
 
 /// One harmonic, `cosine cos(n psi) + sine sin(n psi)`.
@@ -125,7 +125,19 @@ impl HarmonicSeries {
 
     /// Value at an azimuth.
     pub fn value(&self, azimuth_rad: f64) -> f64 {
-        self.value_and_rates(azimuth_rad)[0]
+        let (sin, cos) = azimuth_rad.sin_cos();
+        self.value_of(sin, cos)
+    }
+
+    /// Value where sine and cosine of the azimuth are known, at one azimuth or at several side by side.
+    pub fn value_of<N: Number>(&self, sin: N, cos: N) -> N {
+        let (mut sin_n, mut cos_n) = (sin, cos);
+        let mut value = N::of(self.mean);
+        for h in &self.harmonics {
+            value += cos_n * h.cosine + sin_n * h.sine;
+            (cos_n, sin_n) = (cos_n * cos - sin_n * sin, sin_n * cos + cos_n * sin);
+        }
+        value
     }
 
     /// Value, first and second derivative with respect to azimuth.

@@ -3,7 +3,9 @@
 use crate::flaps::{FlapTurn, HARMONICS};
 use crate::pilot::Pilot;
 use crate::{FlapMarch, FlightError, FlightState, Guidance, RotorPath};
-use hhc_control::{ControlLayout, Cost, RelaxedSettings, TMatrix};
+use hhc_control::{
+    ControlLayout, Cost, CycleController, RelaxedController, RelaxedSettings, TMatrix,
+};
 use preisach_dyn::ActuatorModel;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
@@ -138,7 +140,7 @@ impl Flight<'_> {
     ///
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
-    pub(crate) fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
+    fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
         let settled = |control: usize, step_volt: f64| {
             let mut control_volt = self.layout.zero();
             control_volt[control] = step_volt;
@@ -157,7 +159,7 @@ impl Flight<'_> {
     ///
     /// # Errors
     /// [`FlightError::Response`], [`FlightError::Control`].
-    pub(crate) fn t_in(
+    fn t_in(
         &self,
         state: FlightState,
         steps: &[[Vec<HarmonicSeries>; 2]],
@@ -177,6 +179,28 @@ impl Flight<'_> {
     /// [`FlightError`] of actuators and rotor.
     pub fn identify(&self, state: FlightState) -> Result<TMatrix, FlightError> {
         self.t_in(state, &self.steps()?)
+    }
+
+    /// The controller at zero control; `start` are the loads there.
+    fn pilot(&self, guidance: &Guidance, start: &[f64]) -> Result<Pilot, FlightError> {
+        let relaxed = RelaxedController::new(&self.layout, start.len(), self.settings.clone())?;
+        let first = || self.identify(self.state_at(0.0));
+        Ok(match guidance {
+            Guidance::Fixed => Pilot::Fixed(Box::new(relaxed), first()?),
+            Guidance::Scheduled => {
+                let steps = self.steps()?;
+                let columns = self.path.advance_ratios().iter().map(|&advance_ratio| {
+                    let state = FlightState { advance_ratio, thrust_share: 0.0 };
+                    Ok(self.t_in(state, &steps)?.columns())
+                });
+                let columns = columns.collect::<Result<Vec<_>, FlightError>>()?;
+                Pilot::Scheduled(Box::new(relaxed), columns)
+            }
+            Guidance::Adaptive(settings) => {
+                let cycle = CycleController::new(relaxed, settings, &first()?, start)?;
+                Pilot::Adaptive(Box::new(cycle))
+            }
+        })
     }
 }
 
@@ -266,7 +290,7 @@ pub fn fly(flight: &Flight<'_>, guidance: &Guidance) -> Result<Vec<FlightPoint>,
     flight.check()?;
     let start = flight.path.loads(flight.state_at(0.0), &[])?;
     let rms = (start.iter().map(|z| z * z).sum::<f64>() / start.len() as f64).sqrt();
-    let mut pilot = Pilot::new(flight, guidance, &start)?;
+    let mut pilot = flight.pilot(guidance, &start)?;
     let mut flown = Flown {
         flight,
         flaps: flight.flaps()?,

@@ -4,7 +4,7 @@ use super::everett_map::{corners, play_map, unknown, weights};
 use super::{ForcCurve, ForcData};
 use crate::check::{check_count, check_positive, extremes};
 use crate::identify::fit::program::{LeastSquaresProgram, Row, offset};
-use crate::identify::fit::static_fit::{Neighbours, merged, smooth_density};
+use crate::identify::fit::static_fit::{Smoothness, merged, smooth_density};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState, StaticPreisach, VoltageRange};
 use rotor_base::mean_square;
 use serde::{Deserialize, Serialize};
@@ -87,8 +87,8 @@ pub fn fit(data: &ForcData, settings: &ForcSettings) -> Result<ForcFit, Preisach
         }
     }
     let cells = levels * (levels + 1) / 2;
-    let penalty = settings.smoothness * cells as f64;
-    smooth_density(levels, penalty, Neighbours::Sides, rise, &mut program);
+    let smoothness = Smoothness::Sides(settings.smoothness);
+    smooth_density(levels, cells as f64, smoothness, rise, &mut program);
     let solution = program.solve("density of the reversal curves")?;
     let mut map = play_map(levels, &solution, span);
     map.constant += offset;

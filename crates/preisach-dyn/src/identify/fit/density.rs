@@ -2,7 +2,7 @@
 
 use crate::PlayMap;
 use crate::identify::fit::program::{LeastSquaresProgram, Row};
-use crate::identify::fit::static_fit::{Unknowns, normal, smooth_density, smoothed, weight};
+use crate::identify::fit::static_fit::{Smoothness, Unknowns, normal, smooth_density, weight};
 use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
 use nalgebra::{DMatrix, DVector};
@@ -47,30 +47,26 @@ pub struct DensitySpread {
 pub(crate) fn spread(training: &Training, map: &PlayMap) -> Option<DensitySpread> {
     let unknowns = Unknowns::new(&training.grid);
     let (noise_deg, noise_source) = noise(training, map);
-    let mut targets = LeastSquaresProgram::new(unknowns.count);
+    let samples = normal(training);
+    let mut whole = samples.clone();
     let mut scatter = LeastSquaresProgram::new(unknowns.count);
     let mut row = Row::new();
     for (record, noise_deg) in training.slow.iter().zip(&noise_deg) {
         let weight = weight(training, record);
-        let variance = (weight * noise_deg).powi(2);
         for (index, cells) in record.states() {
             unknowns.hats(cells, &mut row);
-            targets.aim(&row, record.record.output_deg[index], weight);
-            scatter.add(&row, 0.0, variance);
+            whole.aim(&row, record.record.output_deg[index], weight);
+            scatter.add(&row, 0.0, (weight * noise_deg).powi(2));
         }
     }
-    let mut smooth = LeastSquaresProgram::new(unknowns.count);
     let levels = training.grid.levels();
-    let samples = normal(training);
-    let (neighbours, smoothness) = smoothed(samples, levels, training.settings.static_smoothness);
-    let penalty = smoothness * (unknowns.count - 1) as f64;
+    let smoothness = Smoothness::of(samples, levels, training.settings.static_smoothness);
     let rise = |j, k, scale| unknowns.rise(j, k, scale);
-    smooth_density(levels, penalty, neighbours, rise, &mut smooth);
+    smooth_density(levels, (unknowns.count - 1) as f64, smoothness, rise, &mut whole);
 
-    let rises = |program: &LeastSquaresProgram| in_rises(program.normal_matrix(), &unknowns);
-    let (data, scatter) = (rises(samples), rises(&scatter));
-    let whole = &data + rises(&smooth);
-    let mut right = DMatrix::from_column_slice(unknowns.count, 1, targets.right());
+    let mut right = DMatrix::from_column_slice(unknowns.count, 1, whole.right());
+    let [data, scatter, whole] =
+        [samples, &scatter, &whole].map(|program| in_rises(program, &unknowns));
     sum_rows_above(&mut right, &unknowns);
     let found = map.rises().into_iter().flatten();
     let found = DVector::from_iterator(unknowns.count, std::iter::once(map.constant).chain(found));
@@ -118,7 +114,8 @@ fn noise(training: &Training, map: &PlayMap) -> (Vec<f64>, NoiseSource) {
 }
 
 /// A quadratic form in the values at the knots as one in the rises between them, the constant aside.
-fn in_rises(mut matrix: DMatrix<f64>, unknowns: &Unknowns) -> DMatrix<f64> {
+fn in_rises(program: &LeastSquaresProgram, unknowns: &Unknowns) -> DMatrix<f64> {
+    let mut matrix = program.normal_matrix();
     sum_rows_above(&mut matrix, unknowns);
     // symmetric: the columns are what the rows were
     matrix.transpose_mut();

@@ -14,8 +14,6 @@ use std::borrow::Cow;
 
 /// Frequencies that differ by less than this share are one.
 const SAME_HZ: f64 = 0.05;
-/// A density is called unique if the records determine this share of its numbers.
-const UNIQUE: f64 = 0.5;
 /// Amplitudes that differ by less than this share are one.
 const SAME_AMPLITUDE: f64 = 0.05;
 
@@ -159,7 +157,8 @@ impl<'a> Bench<'a> {
             });
         }
         let [determined, unknowns] = static_fit::determined(training);
-        if (determined as f64) < UNIQUE * unknowns as f64 {
+        // unique if the records determine half of its numbers
+        if 2 * determined < unknowns {
             findings.push(Finding::DensityNotUnique { determined, unknowns });
         }
         let amplitudes = || fast.iter().map(|r| r.drive.amplitude_volt);

@@ -15,7 +15,7 @@ use std::ops::Range;
 ///      + smoothness * cells * sum_neighbours (m_a - m_b)^2 / spread^2
 /// m_jk = v_j,k+1 - v_jk >= 0,   v_j0 = 0
 /// ```
-/// `N_jk` are the hat functions of the knots. Which cells are neighbours is said by [`Neighbours`];
+/// `N_jk` are the hat functions of the knots. What is alike is said by [`Smoothness`];
 /// the reversible part, which sits on the diagonal, is smoothed along it.
 /// A cell no record crosses takes what its neighbours have.
 ///
@@ -36,37 +36,37 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
     unknowns.solved(grid, program, settings.static_smoothness, spread * spread)
 }
 
-/// Cells of the (alpha, beta) plane that a density is to be alike in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Neighbours {
-    /// Those that share a side.
-    Sides,
-    /// Plays of one width and the next place: loops of one size look alike wherever they are run. All
-    /// plays of a width alike are the operator of Prandtl and Ishlinskii. The first play of a width is a neighbour of
-    /// that of the next width, hardly as strongly: no width is free.
-    EqualWidth,
+/// What is to be alike in a density.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Smoothness {
+    /// Cells that share a side, with a weight relative to the squared error.
+    Sides(f64),
+    /// Plays of one width: loops of one size look alike wherever they are run, as in the operator of Prandtl and
+    /// Ishlinskii. A density that changes by all of itself from play to play costs as much as an error as large as the
+    /// motion; neighbouring widths hang together weakly, so that none is free.
+    EqualWidths,
 }
 
-/// Weight of plays of one width: a density that changes by all of itself from play to play costs as much as
-/// an error as large as the motion.
-const EQUAL_WIDTH: f64 = 1.0;
-/// Weight of neighbouring widths over that of places.
-const BETWEEN_WIDTHS: f64 = 1e-5;
+/// Weight between widths where plays of one width are alike.
+const BETWEEN_WIDTHS: f64 = 1e-6;
 /// Numbers of a play that a loop and the rise to it determine, at most.
 const OF_A_LOOP: usize = 3;
 
-/// What is alike in the density that a program of samples leads to, and with which weight: `smoothness` between sides, but
-/// where the samples are of one loop alone.
-pub(crate) fn smoothed(
-    samples: &LeastSquaresProgram,
-    levels: usize,
-    smoothness: f64,
-) -> (Neighbours, f64) {
-    let of_a_loop = OF_A_LOOP * levels;
-    if samples.rank(RANK, of_a_loop + 1) > of_a_loop {
-        (Neighbours::Sides, smoothness)
-    } else {
-        (Neighbours::EqualWidth, EQUAL_WIDTH)
+impl Smoothness {
+    /// That of the density of some samples: plays of one width are alike where the samples are of one loop alone.
+    pub(crate) fn of(samples: &LeastSquaresProgram, levels: usize, sides: f64) -> Self {
+        let of_a_loop = OF_A_LOOP * levels;
+        let is_more = samples.rank(RANK, of_a_loop + 1) > of_a_loop;
+        if is_more { Self::Sides(sides) } else { Self::EqualWidths }
+    }
+
+    /// Weights of the plays of width `j` with each other and with the next width; the first is the reversible part.
+    fn weights(self, j: usize) -> [f64; 2] {
+        match (self, j) {
+            (Self::Sides(weight), 0) => [weight, 0.0],
+            (Self::Sides(weight), _) => [0.0, weight],
+            (Self::EqualWidths, _) => [1.0, BETWEEN_WIDTHS],
+        }
     }
 }
 
@@ -123,34 +123,26 @@ pub(crate) fn merged(mut row: Row) -> Row {
     result
 }
 
-/// Bounds of the density, and smoothness of weight `penalty` per cell: `rise(j, k, scale)` is `scale`
+/// Bounds of the density, and its smoothness over `cells`: `rise(j, k, scale)` is `scale`
 /// times the rise of play `j` between its knots `k` and `k + 1`, as a row.
 pub(crate) fn smooth_density(
     levels: usize,
-    penalty: f64,
-    neighbours: Neighbours,
+    cells: f64,
+    smoothness: Smoothness,
     rise: impl Fn(usize, usize, f64) -> Row,
     program: &mut LeastSquaresProgram,
 ) {
     for j in 0..levels {
+        let [along, across] = smoothness.weights(j);
         for k in 0..levels - j {
             program.at_least(rise(j, k, 1.0), 0.0);
-            let next_width = |share: f64| ((j + 1, k), share);
-            let others = match (neighbours, j, k) {
-                (Neighbours::Sides, 0, _) => [Some(((0, k + 1), 1.0)), None],
-                (Neighbours::Sides, ..) => {
-                    [Some(next_width(1.0)), k.checked_sub(1).map(|lower| ((j + 1, lower), 1.0))]
-                }
-                (Neighbours::EqualWidth, _, 0) => {
-                    [Some(((j, 1), 1.0)), Some(next_width(BETWEEN_WIDTHS))]
-                }
-                (Neighbours::EqualWidth, ..) => [Some(((j, k + 1), 1.0)), None],
-            };
-            for ((j2, k2), share) in others.into_iter().flatten() {
+            let lower = k.checked_sub(1).map(|lower| (j + 1, lower, across));
+            let others = [Some((j, k + 1, along)), Some((j + 1, k, across)), lower];
+            for (j2, k2, weight) in others.into_iter().flatten().filter(|other| other.2 > 0.0) {
                 if j2 < levels && k2 < levels - j2 {
                     let mut difference = rise(j, k, 1.0);
                     difference.extend(rise(j2, k2, -1.0));
-                    program.add(&merged(difference), 0.0, share * penalty);
+                    program.add(&merged(difference), 0.0, weight * cells);
                 }
             }
         }
@@ -186,13 +178,13 @@ impl Unknowns {
         smoothness: f64,
         variance: f64,
     ) -> Result<PlayMap, PreisachError> {
-        let (neighbours, weight) = smoothed(&program, grid.levels(), smoothness);
+        let smoothness = Smoothness::of(&program, grid.levels(), smoothness);
         let unit = unit(variance.sqrt());
         program.count_targets_in(unit);
         program.scale(unit * unit / variance);
-        let penalty = unit * unit * weight / variance * (self.count - 1) as f64;
+        let cells = unit * unit / variance * (self.count - 1) as f64;
         let rise = |j, k, scale| self.rise(j, k, scale);
-        smooth_density(grid.levels(), penalty, neighbours, rise, &mut program);
+        smooth_density(grid.levels(), cells, smoothness, rise, &mut program);
         let mut solution = program.solve("static map")?;
         for value in &mut solution {
             *value *= unit;

@@ -2,7 +2,7 @@
 
 use crate::PreisachError;
 use nalgebra::{DMatrix, DVector};
-use rotor_base::{Harmonic, HarmonicSeries, LANES, Lanes, Number};
+use rotor_base::{Harmonic, HarmonicSeries, LANES, Lanes, Number as _};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -30,18 +30,6 @@ impl FourierFit {
             (of[0].0[lane], of[1].0[lane]) = self.phase_rad(index).sin_cos();
         }
         of
-    }
-
-    /// Values at at most [`LANES`] samples.
-    fn values(&self, samples: Range<usize>) -> Lanes {
-        let [sin1, cos1] = self.unit(samples);
-        let (mut s, mut c) = (sin1, cos1);
-        let mut value = Lanes::of(self.series.mean);
-        for h in &self.series.harmonics {
-            value += c * h.cosine + s * h.sine;
-            (c, s) = (c * cos1 - s * sin1, s * cos1 + c * sin1);
-        }
-        value
     }
 
     /// Value at a sample, and its time derivative per sample.
@@ -113,7 +101,8 @@ pub(crate) fn fit(
     let mut left = 0.0;
     for first in range.clone().step_by(LANES) {
         let places = first..range.end.min(first + LANES);
-        let fitted = result.values(places.clone());
+        let [sin, cos] = result.unit(places.clone());
+        let fitted = result.series.value_of(sin, cos);
         for (value, fitted) in values[places].iter().zip(fitted.0) {
             left += (value - fitted).powi(2);
         }
