@@ -13,13 +13,15 @@ mod case_flight;
 mod error;
 mod flaps;
 mod flight;
+mod flown;
 mod path;
 mod pilot;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
 pub use flaps::{FlapMarch, FlapTurn};
-pub use flight::{FlapFailure, Flight, FlightPoint, fly};
+pub use flight::{FlapFailure, Flight};
+pub use flown::{FlightPoint, fly};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 

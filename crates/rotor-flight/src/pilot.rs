@@ -1,6 +1,6 @@
 //! What steers a flight: a controller with what it knows of T.
 
-use crate::{FlightError, RotorPath};
+use crate::{Flight, FlightError, FlightState, RotorPath};
 use hhc_control::{CycleController, EstimatorSettings, RelaxedController, TMatrix};
 
 /// How T is known in flight.
@@ -24,6 +24,32 @@ pub(crate) enum Pilot {
 }
 
 impl Pilot {
+    /// Takes over at zero control; `start` are the loads there.
+    pub(crate) fn new(
+        flight: &Flight<'_>,
+        guidance: &Guidance,
+        start: &[f64],
+    ) -> Result<Self, FlightError> {
+        let relaxed = RelaxedController::new(&flight.layout, start.len(), flight.settings.clone())?;
+        let first = || flight.identify(flight.state_at(0.0));
+        Ok(match guidance {
+            Guidance::Fixed => Self::Fixed(Box::new(relaxed), first()?),
+            Guidance::Scheduled => {
+                let steps = flight.steps()?;
+                let columns = flight.path.advance_ratios().iter().map(|&advance_ratio| {
+                    let state = FlightState { advance_ratio, thrust_share: 0.0 };
+                    Ok(flight.t_in(state, &steps)?.columns())
+                });
+                let columns = columns.collect::<Result<Vec<_>, FlightError>>()?;
+                Self::Scheduled(Box::new(relaxed), columns)
+            }
+            Guidance::Adaptive(settings) => {
+                let cycle = CycleController::new(relaxed, settings, &first()?, start)?;
+                Self::Adaptive(Box::new(cycle))
+            }
+        })
+    }
+
     fn controller(&self) -> &RelaxedController {
         match self {
             Self::Fixed(relaxed, _) | Self::Scheduled(relaxed, _) => relaxed,

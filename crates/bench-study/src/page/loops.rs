@@ -75,7 +75,7 @@ pub(super) fn section(
     let mut text = "The runs that the model misses most come first. Of a periodic run the last two steady cycles are drawn, of others all that is judged.".to_owned();
     let left_out = found.fits.len() - order.len();
     if left_out > 0 {
-        text += &format!(" {left_out} runs with smaller errors are in the table alone.");
+        text = format!("{text} {left_out} runs with smaller errors are in the table alone.");
     }
     titled("loops", TITLE, &text, &parts)
 }

@@ -127,24 +127,26 @@ fn verdict(result: &IdentifyResult) -> String {
 fn what_was_found(result: &IdentifyResult) -> Markup {
     let (low, high) = result.input_range;
     let unit = result.units()[0];
-    let mut text = String::new();
-    for (label, side) in result.sides() {
-        text += &format!("{label}: {side}.\n");
-    }
-    text += &format!(
-        "Data: {}; range {low} to {high} {unit}, {}.\n",
+    let sides = result.sides().into_iter().map(|(label, side)| format!("{label}: {side}."));
+    let mut lines: Vec<String> = sides.collect();
+    lines.push(format!(
+        "Data: {}; range {low} to {high} {unit}, {}.",
         result.dataset, result.range_rule
-    );
-    text += &format!("Split: {}.\n", result.split);
+    ));
+    lines.push(format!("Split: {}.", result.split));
     if result.channels.is_none() {
-        text += &format!("Gain: {:.6} deg/um, {}.\n", result.deg_per_um, result.gain_rule);
+        lines.push(format!("Gain: {:.6} deg/um, {}.", result.deg_per_um, result.gain_rule));
     }
     if result.findings.is_empty() {
-        text += "The data raise no remark.\n";
+        lines.push("The data raise no remark.".to_owned());
     }
-    for line in &result.findings {
-        text += &format!("{:?}: {}\n  {}\n", line.severity, line.message, line.remedy);
-    }
+    lines.extend(
+        result
+            .findings
+            .iter()
+            .map(|line| format!("{:?}: {}\n  {}", line.severity, line.message, line.remedy)),
+    );
+    let text = lines.join("\n");
     titled("found", "What was found", &text, &[])
 }
 

@@ -114,19 +114,18 @@ fn load_amplitudes(parts: [f64; 12], [newton, newton_metre]: [f64; 2]) -> [f64; 
 
 /// Every cycle of every controller: a row each.
 pub fn flight_csv(of: &FlightResult) -> String {
-    let mut text = String::new();
+    let mut rows: Vec<String> = Vec::new();
     for FlownController { controller, points, .. } in &of.flown.flights {
         for point in points {
-            let fields = fields(of, point);
-            if text.is_empty() {
-                let names: Vec<&str> = fields.iter().map(|(name, _)| name.as_str()).collect();
-                text = format!("controller,{}\n", names.join(","));
+            let (names, values): (Vec<String>, Vec<f64>) = fields(of, point).into_iter().unzip();
+            if rows.is_empty() {
+                rows.push(format!("controller,{}\n", names.join(",")));
             }
-            let values: Vec<String> = fields.iter().map(|(_, value)| value.to_string()).collect();
-            text += &format!("{controller},{}\n", values.join(","));
+            let values: Vec<String> = values.iter().map(f64::to_string).collect();
+            rows.push(format!("{controller},{}\n", values.join(",")));
         }
     }
-    text
+    rows.concat()
 }
 
 /// Names and values of a cycle.

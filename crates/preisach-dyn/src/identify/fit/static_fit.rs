@@ -36,28 +36,27 @@ pub(crate) fn fit(training: &Training, targets_deg: &[Vec<f64>]) -> Result<PlayM
     unknowns.solved(grid, program, settings.static_smoothness, spread * spread)
 }
 
-/// What is to be alike in a density.
+/// What is to be alike in a density, with a weight relative to the squared error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Smoothness {
-    /// Cells that share a side, with a weight relative to the squared error.
+    /// Cells that share a side.
     Sides(f64),
     /// Plays of one width: loops of one size look alike wherever they are run, as in the operator of Prandtl and
-    /// Ishlinskii. A density that changes by all of itself from play to play costs as much as an error as large as the
-    /// motion; neighbouring widths hang together weakly, so that none is free.
-    EqualWidths,
+    /// Ishlinskii. Neighbouring widths hang together weakly, so that none is free.
+    EqualWidths(f64),
 }
 
-/// Weight between widths where plays of one width are alike.
-const BETWEEN_WIDTHS: f64 = 1e-6;
+/// Weight between widths over that between plays of one width.
+const BETWEEN_WIDTHS: f64 = 1e-3;
 /// Numbers of a play that a loop and the rise to it determine, at most.
 const OF_A_LOOP: usize = 3;
 
 impl Smoothness {
     /// That of the density of some samples: plays of one width are alike where the samples are of one loop alone.
-    pub(crate) fn of(samples: &LeastSquaresProgram, levels: usize, sides: f64) -> Self {
+    pub(crate) fn of(samples: &LeastSquaresProgram, levels: usize, weight: f64) -> Self {
         let of_a_loop = OF_A_LOOP * levels;
         let is_more = samples.rank(RANK, of_a_loop + 1) > of_a_loop;
-        if is_more { Self::Sides(sides) } else { Self::EqualWidths }
+        if is_more { Self::Sides(weight) } else { Self::EqualWidths(weight) }
     }
 
     /// Weights of the plays of width `j` with each other and with the next width; the first is the reversible part.
@@ -65,7 +64,7 @@ impl Smoothness {
         match (self, j) {
             (Self::Sides(weight), 0) => [weight, 0.0],
             (Self::Sides(weight), _) => [0.0, weight],
-            (Self::EqualWidths, _) => [1.0, BETWEEN_WIDTHS],
+            (Self::EqualWidths(weight), _) => [weight, BETWEEN_WIDTHS * weight],
         }
     }
 }
