@@ -221,7 +221,7 @@ impl DensityLine {
         let count = |is_so: fn(&Option<f64>) -> bool| shares().filter(|own| is_so(own)).count();
         Self {
             cells: shares().count(),
-            at_bound: count(|own| own.is_none()),
+            at_bound: count(Option::is_none),
             from_neighbours: count(|own| own.is_some_and(|share| share < LEAST_SHARE)),
             noise: spread.noise_deg,
             noise_source: spread.noise_source,

@@ -75,7 +75,7 @@ pub(super) fn section(
             text += &line.text(units[1]);
         }
         _ => {
-            text += " Its deviation could not be computed: the equations of the fit are singular. Record a slow major loop and reversal curves."
+            text += " Its deviation could not be computed: the equations of the fit are singular. Record a slow major loop and reversal curves.";
         }
     }
     titled("density", TITLE, &text, &[grid("grid wide", figures)])
