@@ -72,11 +72,14 @@ pub(super) fn section(
     }
     let unit = found.heading.channels.as_ref().map_or("V", |own| own.input.as_str());
     parts.push(folded("Every run in numbers", &fits(found.fits.iter(), unit).table()));
-    let mut text = "The runs that the model misses most come first. Of a periodic run the last two steady cycles are drawn, of others all that is judged.".to_owned();
     let left_out = found.fits.len() - order.len();
-    if left_out > 0 {
-        text = format!("{text} {left_out} runs with smaller errors are in the table alone.");
-    }
+    let more = match left_out {
+        0 => String::new(),
+        _ => format!(" {left_out} runs with smaller errors are in the table alone."),
+    };
+    let text = format!(
+        "The runs that the model misses most come first. Of a periodic run the last two steady cycles are drawn, of others all that is judged.{more}"
+    );
     titled("loops", TITLE, &text, &parts)
 }
 

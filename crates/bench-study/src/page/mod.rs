@@ -22,7 +22,7 @@ use crate::curves::{CurveIdentification, CurvesResult};
 use crate::identification::{BenchIdentification, IdentifyResult};
 use crate::reversals::of_records;
 use preisach_dyn::ActuatorLaw;
-use report_page::{Charts, Markup, body, folded, heading, page, titled};
+use report_page::{Charts, Markup, Sheet, body, folded, heading, page, titled};
 
 /// Points of all lines of a section together, and of one line at least and at most.
 const POINTS: usize = 30_000;
@@ -127,27 +127,25 @@ fn verdict(result: &IdentifyResult) -> String {
 fn what_was_found(result: &IdentifyResult) -> Markup {
     let (low, high) = result.input_range;
     let unit = result.units()[0];
-    let sides = result.sides().into_iter().map(|(label, side)| format!("{label}: {side}."));
-    let mut lines: Vec<String> = sides.collect();
-    lines.push(format!(
+    let mut text = Sheet::default();
+    for (label, side) in result.sides() {
+        text.line(format_args!("{label}: {side}."));
+    }
+    text.line(format_args!(
         "Data: {}; range {low} to {high} {unit}, {}.",
         result.dataset, result.range_rule
     ));
-    lines.push(format!("Split: {}.", result.split));
+    text.line(format_args!("Split: {}.", result.split));
     if result.channels.is_none() {
-        lines.push(format!("Gain: {:.6} deg/um, {}.", result.deg_per_um, result.gain_rule));
+        text.line(format_args!("Gain: {:.6} deg/um, {}.", result.deg_per_um, result.gain_rule));
     }
     if result.findings.is_empty() {
-        lines.push("The data raise no remark.".to_owned());
+        text.line("The data raise no remark.");
     }
-    lines.extend(
-        result
-            .findings
-            .iter()
-            .map(|line| format!("{:?}: {}\n  {}", line.severity, line.message, line.remedy)),
-    );
-    let text = lines.join("\n");
-    titled("found", "What was found", &text, &[])
+    for line in &result.findings {
+        text.line(format_args!("{:?}: {}\n  {}", line.severity, line.message, line.remedy));
+    }
+    titled("found", "What was found", &text.finish(), &[])
 }
 
 /// The table of models.
