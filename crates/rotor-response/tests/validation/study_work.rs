@@ -18,8 +18,7 @@ pub(crate) const ROWS: &[Check] = &[row(
     "-",
 )
 .against(
-    "counts of the solver; its time, a fifth at most, is in the bench \
-         `linearised` of rotor-response",
+    "counts of the solver; its time is on the page on speed",
 )
 .at_most(0.25, work_of_t)];
 

@@ -15,7 +15,7 @@ pub enum WakePreset {
     /// A wake alike at every azimuth, with a near wake of 90 deg that moves freely, the inboard sheet as vortices, and
     /// cores with the curvature between segments.
     Hover,
-    /// As in forward flight with two turns, steps of 15 deg, every second age and a far field in single precision.
+    /// As in forward flight with two turns, steps of 15 deg and velocities at every second age.
     Fast,
 }
 
