@@ -7,8 +7,8 @@ use model_gap::discovery::Verdict;
 use rotor_base::mean_square;
 use rotor_gap::{RotorDiagnosis, RotorModel, RotorQuestion, Sweep, diagnose, predict};
 use rotor_study::case::{
-    ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FlapValues,
-    FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
+    ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FarField,
+    FlapValues, FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
     WindTunnelTrim,
 };
 use std::fmt::Write;
@@ -227,6 +227,7 @@ fn a_wake_that_diverges_is_not_flown() {
         core_r: 0.01,
         near_core_r: Some(0.01),
         mutual_core_r: 0.0,
+        far_field: Some(FarField::Double),
         ..FreeWakeValues::default()
     });
     let is_told = |ct_sigma: f64| {

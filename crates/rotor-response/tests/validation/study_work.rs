@@ -17,9 +17,7 @@ pub(crate) const ROWS: &[Check] = &[row(
          differences of .5 deg (each iteration and each inflow once)",
     "-",
 )
-.against(
-    "counts of the solver; its time is on the page on speed",
-)
+.against("counts of the solver; its time is on the page on speed")
 .at_most(0.25, work_of_t)];
 
 /// Evaluations for the linearised T over those of the differences.
