@@ -7,8 +7,8 @@ use model_gap::discovery::Verdict;
 use rotor_base::mean_square;
 use rotor_gap::{RotorDiagnosis, RotorModel, RotorQuestion, Sweep, diagnose, predict};
 use rotor_study::case::{
-    ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FarField,
-    FlapValues, FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
+    ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FlapValues,
+    FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
     WindTunnelTrim,
 };
 use std::fmt::Write;
@@ -210,7 +210,8 @@ fn columns_that_mean_nothing_and_points_that_no_trim_reaches_are_told() {
     assert_eq!(found.table.points.len(), 7);
 }
 
-/// What a diverged wake leaves is no rotor in flight: nothing is read of it. Which thrust parts rotor and wake is chance.
+/// What a diverged wake leaves is no rotor in flight: nothing is read of it. One update already shows it: more would be chaos, other on
+/// every machine.
 #[test]
 fn a_wake_that_diverges_is_not_flown() {
     let mut case = simulated();
@@ -227,16 +228,12 @@ fn a_wake_that_diverges_is_not_flown() {
         core_r: 0.01,
         near_core_r: Some(0.01),
         mutual_core_r: 0.0,
-        far_field: Some(FarField::Double),
+        updates: 1,
         ..FreeWakeValues::default()
     });
-    let is_told = |ct_sigma: f64| {
-        let text =
-            format!("advance_ratio,ct_sigma,shaft_tilt_deg,theta0_deg\n0.03,{ct_sigma},-30,0\n");
-        let data = PointData::read(&Source { name: "made".into(), text }).unwrap();
-        let sweep = Sweep::of(&data, &case).unwrap();
-        let read = predict(&RotorModel::of(case.clone()), &sweep, None, None);
-        read.is_err_and(|own| own.to_string().contains("wake and trim found no solution"))
-    };
-    assert!([0.12, 0.15, 0.10].into_iter().any(is_told));
+    let text = "advance_ratio,ct_sigma,shaft_tilt_deg,theta0_deg\n0.03,0.15,-30,0\n";
+    let data = PointData::read(&Source { name: "made".into(), text: text.into() }).unwrap();
+    let sweep = Sweep::of(&data, &case).unwrap();
+    let own = predict(&RotorModel::of(case), &sweep, None, None).unwrap_err();
+    assert!(own.to_string().contains("wake and trim found no solution"), "{own}");
 }

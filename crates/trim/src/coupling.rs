@@ -156,7 +156,7 @@ impl Coupling<'_> {
         let mut best = start.clone();
         let mut now = start;
         let (mut halvings, mut least, mut stagnant, mut failures) = (0, f64::INFINITY, 0, 0);
-        let mut least_change = f64::INFINITY;
+        let (mut least_change, mut failure) = (f64::INFINITY, None);
         for _ in 0..self.settings.updates {
             match self.update(&now, halvings) {
                 Ok(next) => {
@@ -193,13 +193,15 @@ impl Coupling<'_> {
                         let inflow_change = best.inflow_change;
                         return (best, WakeOutcome::Failed { updates, inflow_change, error });
                     }
+                    failure = Some(error);
                 }
             }
         }
         let done = &self.updates[first..];
         if least_change > TRUSTED {
             let (updates, inflow_change) = (done.len(), f64::INFINITY);
-            let error = runaway(updates, least_change, TRUSTED);
+            let ran_away = || runaway(updates, least_change, TRUSTED);
+            let error = failure.filter(|_| updates == 0).unwrap_or_else(ran_away);
             return (best, WakeOutcome::Failed { updates, inflow_change, error });
         }
         // the state kept is one of those the band is of

@@ -104,6 +104,8 @@ pub struct OrbitBound {
     pub residual: f64,
     /// Largest weak residual over that of the start, if it is less; infinite: whatever the start leaves.
     pub of_first: f64,
+    /// Residual that is exact enough whatever the start leaves, generalised force.
+    pub exact: f64,
 }
 
 impl PeriodicSolver {
@@ -166,7 +168,8 @@ impl PeriodicSolver {
         system: &S,
         start: &Orbit,
     ) -> Result<PeriodicSolution<S::Seen>, PeriodicError<S::Error>> {
-        let bound = OrbitBound { residual: self.settings.tolerance, of_first: f64::INFINITY };
+        let exact = self.settings.tolerance;
+        let bound = OrbitBound { residual: exact, of_first: f64::INFINITY, exact };
         self.solve_to(bound, system, start)
     }
 
@@ -183,7 +186,7 @@ impl PeriodicSolver {
         self.check(system, start)?;
         let work = &mut S::Work::default();
         let mut state = self.evaluate(system, work, start.clone(), (0, start))?;
-        let of_first = (bound.of_first * state.norm).max(self.settings.tolerance);
+        let of_first = (bound.of_first * state.norm).max(bound.exact);
         let tolerance = bound.residual.min(of_first);
         let mut history = vec![state.norm];
         let mut best = (state.norm, state.orbit.clone());

@@ -238,7 +238,7 @@ impl RotorSolver {
         for inflow_iteration in 1..=self.tolerances.inflow_iterations {
             let system = rotor.system(&air, self.point_inputs(condition, &inflow));
             let of_first = if inflow_iteration == 1 { ORBIT_AT_FIRST } else { f64::INFINITY };
-            let bound = OrbitBound { residual: orbit_tolerance, of_first };
+            let bound = OrbitBound { residual: orbit_tolerance, of_first, exact };
             let solved = self.solver.solve_to(bound, &system, &orbit);
             let solution = solved.map_err(Self::orbit_error(&rotor))?;
             iterations += solution.iterations;

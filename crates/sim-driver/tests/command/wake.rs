@@ -94,7 +94,7 @@ fn a_run_in_a_wake_that_has_not_settled_says_so() {
 }
 
 /// A wake that diverges is stored and shown as the last good state, not controlled, and fails the command;
-/// in a descent where wakes break down that is said. Which thrust parts them is chance: one of three does.
+/// in a descent where wakes break down that is said. One update already shows it: more would be chaos, other on every machine.
 #[test]
 fn a_wake_that_parts_from_its_rotor_is_no_solution() {
     let place = Place::new();
@@ -102,26 +102,21 @@ fn a_wake_that_parts_from_its_rotor_is_no_solution() {
         structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
         aerodynamics: (model: QuasiSteady, compressibility: None),
         inflow: (model: FreeWake(azimuths: 12, turns: 3, panels: 10, core_r: 0.01, near_core_r: 0.01,
-            mutual_core_r: 0)),
-        trim: WindTunnel(ct_sigma: THRUST, shaft_tilt_deg: -30),
+            mutual_core_r: 0, updates: 1)),
+        trim: WindTunnel(ct_sigma: 0.15, shaft_tilt_deg: -30),
         actuator: (model: Ideal), control: (harmonics: [[4]], actuators: [Ideal]))";
-    let runs = ["0.12", "0.15", "0.10"].map(|thrust| {
-        place.write("case.ron", &case.replace("THRUST", thrust));
-        let ran = place.hhc(&["run", "case.ron", "--out", thrust]);
-        assert!(ran.err.contains("vortex-ring state"), "{thrust}: {}", ran.err);
-        (thrust, ran)
-    });
-    let diverged = runs.iter().find(|(_, ran)| ran.code == 1);
-    let Some((thrust, ran)) = diverged else { panic!("none of the three wakes has diverged") };
+    place.write("case.ron", case);
+    let ran = place.hhc(&["run", "case.ron", "--out", "run"]);
+    assert_eq!(ran.code, 1, "{}", ran.out);
+    assert!(ran.err.contains("vortex-ring state"), "{}", ran.err);
     assert!(ran.out.contains("Wake       DIVERGED"), "{}", ran.out);
     assert!(!ran.out.contains("Reduction of hub vibration"), "{}", ran.out);
     assert!(ran.err.contains("inflow.model: wake and trim found no solution"), "{}", ran.err);
-    let stored = place.read(&format!("{thrust}/result.json"));
+    let stored = place.read("run/result.json");
     let stored: serde_json::Value = serde_json::from_str(&stored).unwrap();
     assert_eq!(stored["result"]["wake"], "diverged");
     assert!(stored["result"]["control"].as_array().unwrap().is_empty());
-    place.hhc(&["report", thrust]).done();
-    place.write("case.ron", &case.replace("THRUST", thrust));
+    place.hhc(&["report", "run"]).done();
     let looked_at = place.hhc(&["wake", "case.ron"]);
     assert_eq!(looked_at.code, 1);
     // among other advance ratios it is marked, and the others are found
