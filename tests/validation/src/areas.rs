@@ -312,6 +312,7 @@ pub const AREAS: &[Area] = &[
             "V-TRIM-08",
             "V-TRIM-09",
             "V-TRIM-10",
+            "V-TRIM-11",
             "V-TRIM-05",
         ],
     },

@@ -56,7 +56,7 @@ impl ResponseSystem<'_> {
         let shared = (&*rows, &*foreshortening);
         let parts =
             together.par_iter_mut().zip(sections.par_chunks_mut(STATIONS_TOGETHER * blocks));
-        let found: Vec<Result<(), ResponseError>> = parts
+        let refused = parts
             .enumerate()
             .map(|(part, (own, sections))| {
                 let first = part * STATIONS_TOGETHER;
@@ -70,8 +70,10 @@ impl ResponseSystem<'_> {
                     self.at_station(first + k, law, shared, own, loads)
                 })
             })
-            .collect();
-        found.into_iter().collect::<Result<(), ResponseError>>()?;
+            .find_map_first(Result::err);
+        if let Some(error) = refused {
+            return Err(error);
+        }
         let revolution = Revolution { first_station: self.air.first_station, points, sections };
         match (out, &blade.modal) {
             (Some(out), None) => {

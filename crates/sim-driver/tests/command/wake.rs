@@ -1,6 +1,7 @@
 //! `hhc wake`: a case trimmed in its free wake.
 
 use crate::place::{Place, QUICK_CASE, SMALL_WAKE};
+use std::process::Command;
 
 fn small_case() -> String {
     QUICK_CASE.replace("(model: Uniform)", &format!("(model: {SMALL_WAKE})"))
@@ -212,4 +213,24 @@ fn asking_for_the_free_wake_keeps_that_of_the_case() {
     })
     .into_iter();
     assert_eq!(trims.next(), trims.next());
+}
+
+/// Lags of the sections, free wake, T, hysteresis of the flaps and control: every file the same, byte for byte.
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let place = Place::new();
+    let case = "(structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
+        inflow: (model: FreeWake(azimuths: 12, turns: 2, panels: 8, updates: 2)),
+        control: (harmonics: [[4]], actuators: [Hysteretic]))";
+    place.write("case.ron", case);
+    let [one, two, four] = ["1", "2", "4"].map(|threads| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_hhc"));
+        command.args(["run", "case.ron", "--out", threads]);
+        command.env("RAYON_NUM_THREADS", threads).current_dir(place.path());
+        assert!(command.output().unwrap().status.success());
+        ["result.json", "vortices.csv", "airloads.csv"]
+            .map(|file| place.read(&format!("{threads}/{file}")))
+    });
+    assert_eq!(one, two);
+    assert_eq!(one, four);
 }

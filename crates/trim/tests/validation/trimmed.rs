@@ -6,7 +6,7 @@ use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, TorsionTerms};
 use rotor_response::{
     Condition, Couplings, Discretisation, FlapMass, PowerBalance, ResponseTolerances, Rotor,
-    RotorModel, RotorSolver, TrailingEdgeFlap,
+    RotorModel, RotorSolution, RotorSolver, TrailingEdgeFlap,
 };
 use rotor_wake::LinearInflow;
 use trim::{TrimSettings, TrimSolution, TrimTarget, Vehicle, trim};
@@ -74,6 +74,15 @@ pub(crate) const ROWS: &[Check] = &[
     )
     .against("conservation of energy")
     .at_most(1e-5, power_beside_the_blade),
+    row(
+        "V-TRIM-11",
+        "4/rev hub loads in trim, mu 0.15 and 0.30, Drees, and with flaps at 3/rev, as \
+         fast as by default (kept Newton matrices, rough orbits on the way): distance from \
+         those of trims from nothing, each orbit to 1e-13, largest, of the vector",
+        "-",
+    )
+    .against("the same equations")
+    .at_most(1e-7, by_short_cuts),
     row(
         "V-TRIM-05",
         "coupled trim of a rigid flapping blade, flight speed 0.10 to 0.35 of the \
@@ -170,6 +179,46 @@ fn power_beside_the_blade() -> Result<f64, Failure> {
         Ok(of(trimmed.rotor.power).max(of(moved.power)))
     });
     worst("couplings", 2, imbalances)
+}
+
+fn by_short_cuts() -> Result<f64, Failure> {
+    let exact = ResponseTolerances { periodicity: 1e-13, inflow: 1e-13, ..Default::default() };
+    let exact = (exact, TrimSettings { tolerance: 1e-11, ..TrimSettings::default() });
+    let usual = (ResponseTolerances::default(), TrimSettings::default());
+    let blade = BladeProperties::new(BladeSpec::table_1())?;
+    let rotor = Rotor::new(RotorModel::paper_case(), &blade, Discretisation::default())?;
+    let rotor = Arc::new(rotor);
+    let distances = [0.15, 0.30].map(|mu| {
+        let loads = |(tolerances, settings): (ResponseTolerances, TrimSettings)| {
+            let mut solver = RotorSolver::new(Arc::clone(&rotor), mu, tolerances)?;
+            let inflow = LinearInflow::Drees;
+            let trimmed = trim(&mut solver, &inflow, mu, &LEVEL(), &settings, None)?;
+            let mut angle = HarmonicSeries::zero(3);
+            angle.set_harmonic(3, Harmonic { cosine: 0.03, sine: 0.02 });
+            let condition = Condition {
+                bank_rad: trimmed.attitude.roll_rad,
+                flight: trimmed.flight,
+                controls: trimmed.controls,
+                flap_angles_rad: vec![angle.clone(), angle],
+            };
+            let moved = solver.solve(&condition, &inflow, Some(&trimmed.rotor))?;
+            let fourth = |of: RotorSolution| of.hub.components.map(|own| own.harmonic(4));
+            Ok::<_, Failure>([trimmed.rotor, moved].map(fourth))
+        };
+        let [fast, slow] = [loads(usual)?, loads(exact)?];
+        let norm = |of: &[Harmonic]| {
+            of.iter().map(|h| h.cosine.powi(2) + h.sine.powi(2)).sum::<f64>().sqrt()
+        };
+        let apart = fast.iter().zip(&slow).map(|(fast, slow)| {
+            let apart = fast
+                .iter()
+                .zip(slow)
+                .map(|(a, b)| Harmonic { cosine: a.cosine - b.cosine, sine: a.sine - b.sine });
+            norm(&apart.collect::<Vec<_>>()) / norm(slow)
+        });
+        Ok(apart.fold(0.0, f64::max))
+    });
+    worst("advance ratios", 2, distances)
 }
 
 fn unsteady_power_falls() -> Result<f64, Failure> {
