@@ -6,11 +6,13 @@
 //!   bias slowly led so that the mean flap angle vanishes.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
+//! - *Failures* ([`failures_of_case`]): what control reaches when a flap, an actuator or a load cell of one blade fails.
 //!
 //! Values in, values out: no file, no terminal.
 
 mod case_flight;
 mod error;
+mod failures;
 mod flaps;
 mod flight;
 mod flown;
@@ -19,6 +21,7 @@ mod pilot;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
+pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};

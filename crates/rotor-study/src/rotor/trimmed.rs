@@ -391,6 +391,17 @@ impl TrimmedRotor {
         dissimilar_hub_loads(&mut alike, (&condition(1.0, 0.0), about), &mut others)
     }
 
+    /// Root loads of one blade, its flaps moving (rad), controls, attitude and inflow as trimmed.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn blade_root_loads(
+        &self,
+        flap_angles_rad: Vec<HarmonicSeries>,
+    ) -> Result<SixLoads, ResponseError> {
+        self.solver.clone().blade_loads(&self.condition(flap_angles_rad), &self.trim.rotor)
+    }
+
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
     ///
     /// Starts from what the linearised rotor makes of the trimmed orbit and its inflow, where sections may stall from these

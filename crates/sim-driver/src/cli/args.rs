@@ -180,6 +180,10 @@ pub struct FlyArgs {
     /// Case file with a section `flight`.
     #[arg(value_name = "CASE.ron")]
     pub case: PathBuf,
+    /// Also show what control reaches when a flap, an actuator or a load cell of one blade fails, at the advance ratio of
+    /// the case: failures.csv. About 20 s.
+    #[arg(long)]
+    pub failures: bool,
     /// Folder for flight.csv and flight.html; out/ and the name of the case if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -5,16 +5,17 @@ use super::{folder_or, overridden, warn, write_texts};
 use crate::SimError;
 use crate::case::load_case;
 use crate::files::refuse_unwritable;
-use crate::flight::{flight_csv, flight_html, flown};
+use crate::flight::{failures_csv, flight_csv, flight_html, flown};
 use crate::output::{Format, Printable, print};
 
 pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);
     let out = folder_or(args.out.as_ref(), &args.case);
     refuse_unwritable(&out)?;
-    let found = flown(&loaded)?;
+    let found = flown(&loaded, args.failures)?;
     let files = [("flight.csv", flight_csv(&found)), ("flight.html", flight_html(&found))];
-    write_texts(&out, files)?;
+    let failures = found.failures.as_ref().map(|study| ("failures.csv", failures_csv(study)));
+    write_texts(&out, files.into_iter().chain(failures))?;
     warn(&found.warnings, args.format);
     print(&found.render(args.format)?)?;
     if args.format != Format::Json {

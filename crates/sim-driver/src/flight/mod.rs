@@ -1,7 +1,9 @@
 //! `hhc fly`: the flight of a case in time, as table, CSV and page.
 
+mod failures;
 mod page;
 
+pub use failures::failures_csv;
 pub use page::flight_html;
 
 use crate::SimError;
@@ -11,7 +13,9 @@ use crate::output::{Printable, Sheet};
 use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
 use report_page::Section;
-use rotor_flight::{FlightPoint, FlownCase, FlownController, fly_case};
+use rotor_flight::{
+    FailureStudy, FlightPoint, FlownCase, FlownController, failures_of_case, fly_case,
+};
 use rotor_study::HubLoads;
 use serde::Serialize;
 
@@ -35,13 +39,16 @@ pub struct FlightResult {
     pub units: [f64; 2],
     /// The flights.
     pub flown: FlownCase,
+    /// What control reaches under failures, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub failures: Option<FailureStudy>,
 }
 
-/// Flies a case.
+/// Flies a case; with failures, what control reaches under them too.
 ///
 /// # Errors
 /// A case without a flight; what its actuators are refused for; [`SimError::Flight`].
-pub fn flown(loaded: &LoadedCase) -> Result<FlightResult, SimError> {
+pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, SimError> {
     let case = &loaded.case;
     let Some(values) = &case.flight else {
         let fault = Fault::Refused { message: NO_FLIGHT.to_owned() };
@@ -52,11 +59,15 @@ pub fn flown(loaded: &LoadedCase) -> Result<FlightResult, SimError> {
     flying.case.control.harmonics = vec![values.harmonics.clone()];
     let actuators = case_actuators(&flying)?;
     let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
-    let progress = Progress::new(1 + values.controllers.len());
+    let progress = Progress::new(1 + values.controllers.len() + usize::from(with_failures));
     progress.doing("trims and flights");
-    let found = fly_case(case, values, model, &|| progress.step());
+    let found = fly_case(case, values, model, &|| progress.step()).and_then(|flown| {
+        progress.doing("failures");
+        let failures = with_failures.then(|| failures_of_case(case, values)).transpose()?;
+        Ok((flown, failures))
+    });
     progress.finish();
-    let flown = found.map_err(|source| SimError::Flight {
+    let (flown, failures) = found.map_err(|source| SimError::Flight {
         place: loaded.index.place(source.field()),
         source: Box::new(source),
     })?;
@@ -69,6 +80,7 @@ pub fn flown(loaded: &LoadedCase) -> Result<FlightResult, SimError> {
         blades: case.rotor.blades,
         units: [scales.force_newton(), scales.moment_newton_metre()],
         flown,
+        failures,
     })
 }
 
@@ -200,6 +212,9 @@ impl Printable for FlightResult {
             sheet.paragraphs(note);
         }
         sheet.block(&self.summary().to_string());
+        if let Some(study) = &self.failures {
+            sheet.block(&failures::section(study).to_string());
+        }
         sheet.finish()
     }
 }

@@ -1,6 +1,6 @@
 //! The page of a flight: what happened against time, controllers beside each other.
 
-use super::{FlightResult, load_amplitudes};
+use super::{FlightResult, failures, load_amplitudes};
 use crate::results::flap_name;
 use maud::{Markup, html};
 use report_page::pictures::{Look, Panel, PointForm, Series, legend};
@@ -148,6 +148,7 @@ pub fn flight_html(of: &FlightResult) -> String {
             p { "What is not commanded comes of the hysteresis: the harmonics mix." }
             (of.motions())
         }
+        @if let Some(study) = &of.failures { (failures::section(study)) }
     };
     page(&of.title, &body, &Charts::default())
 }

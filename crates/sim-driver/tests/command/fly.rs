@@ -59,6 +59,23 @@ fn a_flight_is_told_drawn_and_tabled() {
 }
 
 #[test]
+fn failures_are_tabled() {
+    let place = flying("duration_s: 2, knots: 2, harmonics: [2, 3], controllers: [Fixed]");
+    let said = place.hhc(&["fly", "case.ron", "--failures"]).done();
+    for part in ["Failures", "flap stuck at 3 deg", "each blade, told", "not measured"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() <= 110), "{said}");
+    let csv = place.read("out/case/failures.csv");
+    let rows = rows(&csv);
+    assert_eq!(rows.len(), 6 * 4, "{csv}");
+    let others = |row: usize| rows[row]["others_over_j0"].parse::<f64>().unwrap();
+    // blades alike leave nothing off their number; one flap that stands does
+    assert!(others(1) < 1e-9 && others(5) > 0.01, "{csv}");
+    assert!(place.read("out/case/flight.html").contains("flap stuck at 3 deg"));
+}
+
+#[test]
 fn the_number_of_threads_changes_no_byte() {
     let place = flying(FLIGHT);
     let of = |threads: &str| {
