@@ -7,7 +7,9 @@
 #![expect(clippy::disallowed_methods, reason = "a bench reads the clock")]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use rotor_wake::{BladeLines, CirculationMap, FlightState, FreeWake, FreeWakeSettings, WakeRotor};
+use rotor_wake::{
+    BladeLines, CirculationMap, FarField, FlightState, FreeWake, FreeWakeSettings, WakeRotor,
+};
 use std::f64::consts::TAU;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -18,6 +20,11 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 const BUDGET_S: f64 = 0.1;
 const PANELS: usize = 20;
+
+/// As trims in forward flight have them.
+fn usual() -> FreeWakeSettings {
+    FreeWakeSettings { far_field: FarField::Single, ..FreeWakeSettings::default() }
+}
 
 /// An undistorted wake and a circulation on its grid.
 fn wake_of(settings: FreeWakeSettings) -> (FreeWake, CirculationMap) {
@@ -32,7 +39,6 @@ fn wake_of(settings: FreeWakeSettings) -> (FreeWake, CirculationMap) {
 /// How a sweep on one thread grows with the steps of azimuth and with the free turns.
 fn growth(criterion: &mut Criterion) {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let usual = FreeWakeSettings::default;
     let azimuths = [12, 24, 36, 48].map(|n| (n, usual().with_azimuths(n)));
     let turns = [2, 4, 6, 8].map(|turns| (turns, FreeWakeSettings { turns, ..usual() }));
     for (name, wakes) in [("sweep over azimuths", azimuths), ("sweep over turns", turns)] {
@@ -48,7 +54,7 @@ fn growth(criterion: &mut Criterion) {
 }
 
 fn sweep(criterion: &mut Criterion) {
-    let (wake, circulation) = wake_of(FreeWakeSettings::default());
+    let (wake, circulation) = wake_of(usual());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let mut one = || {
         let mut moved = wake.clone();
@@ -66,7 +72,7 @@ fn sweep(criterion: &mut Criterion) {
     println!("sweep: {:.1} ms on one thread, ratio to budget {:.2}", 1e3 * best, best / BUDGET_S);
     criterion.bench_function("sweep", |b| pool.install(|| b.iter(&mut one)));
     // on the grid of a trim
-    let (wake, circulation) = wake_of(FreeWakeSettings::default().with_azimuths(36));
+    let (wake, circulation) = wake_of(usual().with_azimuths(36));
     criterion.bench_function("line induction", |b| {
         pool.install(|| b.iter(|| black_box(wake.line_induction(&circulation).unwrap())));
     });
