@@ -6,11 +6,14 @@
 //!   bias slowly led so that the mean flap angle vanishes.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
+//! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
+//!   ([`controllers_of_case`]).
 //!
 //! Values in, values out: no file, no terminal.
 
 mod case_flight;
 mod error;
+mod exported;
 mod flaps;
 mod flight;
 mod flown;
@@ -19,6 +22,7 @@ mod pilot;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
+pub use exported::{controllers_of_case, exported_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
