@@ -284,6 +284,16 @@ pub enum ExportForm {
     Mat,
 }
 
+/// What of a case `hhc export` writes as numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum ExportMatrices {
+    /// T of every set of harmonics at the knots of the flight, with baseline, conditions and covariance.
+    #[default]
+    T,
+    /// The linearised rotor at the trim of the case: one blade over the azimuth, all blades with constant coefficients.
+    StateSpace,
+}
+
 /// `hhc export`.
 #[derive(Debug, Clone, Args)]
 pub struct ExportArgs {
@@ -293,6 +303,9 @@ pub struct ExportArgs {
     /// Form to write.
     #[arg(long, value_enum)]
     pub to: ExportForm,
+    /// Numbers of a case to write as json, csv or mat; T if left out.
+    #[arg(long, value_enum)]
+    pub what: Option<ExportMatrices>,
     /// Samples per second of the step functions of an actuator.
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,

@@ -1,6 +1,6 @@
 //! `hhc export`.
 
-use super::args::{ExportArgs, ExportForm};
+use super::args::{ExportArgs, ExportForm, ExportMatrices};
 use super::warn;
 use crate::SimError;
 use crate::case::{LoadedCase, is_actuator_file, read_case};
@@ -11,7 +11,7 @@ use crate::problem::{Fault, Place, Problem};
 use actuator_export::Target;
 use bench_study::stored::read_actuator;
 use rotor_export::{DataFormat, controller_files, data_files};
-use rotor_flight::{controllers_of_case, exported_case};
+use rotor_flight::{controllers_of_case, exported_case, state_space_of_case};
 use std::fmt::Display;
 
 /// Files of a folder, name and bytes of each, and warnings.
@@ -22,6 +22,12 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
         return Err(DataError::WouldOverwrite { path: args.output.clone() }.into());
     }
     let source = Source::read(&args.file)?;
+    if args.what.is_some() && (is_actuator_file(&source) || args.to == ExportForm::C) {
+        return Err(refused(
+            args,
+            &"`--what` chooses numbers of a case for json, csv and mat; leave it out",
+        ));
+    }
     let (files, warnings) = if is_actuator_file(&source) {
         actuator(args, &source)?
     } else {
@@ -74,7 +80,10 @@ fn case(args: &ExportArgs, loaded: &LoadedCase) -> Result<Written, SimError> {
             return Err(refused(args, &message));
         }
     };
-    let (document, warnings) = leaving(loaded, exported_case)?;
+    let (document, warnings) = match args.what.unwrap_or_default() {
+        ExportMatrices::T => leaving(loaded, exported_case)?,
+        ExportMatrices::StateSpace => leaving(loaded, |case, _| state_space_of_case(case))?,
+    };
     Ok((data_files(&document, name, format), warnings))
 }
 

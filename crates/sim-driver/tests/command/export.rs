@@ -101,6 +101,22 @@ fn controllers_of_a_flight_leave_as_c_that_compiles() {
 }
 
 #[test]
+fn the_rotor_leaves_as_state_space() {
+    let place = Place::new();
+    place.write("case.ron", QUICK_CASE);
+    let args = ["export", "case.ron", "--to", "json", "--what", "state-space", "-o", "s"];
+    place.hhc(&args).done();
+    let json: serde_json::Value = serde_json::from_str(&place.read("s/rotor.json")).unwrap();
+    let a = array(&json, "A");
+    assert_eq!(a["axes"][0]["labels"][4], "flap1_rate");
+    // the derivative of a coordinate is its rate
+    assert_eq!(numbers(&a["values"][0][4])[7].to_bits(), 1.0_f64.to_bits());
+    let together = array(&json, "A_multiblade");
+    assert_eq!(together["values"].as_array().unwrap().len(), 4 * 8);
+    assert_eq!(array(&json, "B_multiblade")["axes"][1]["labels"][6], "cos1_flap1_angle");
+}
+
+#[test]
 fn tables_and_mat_hold_the_same_and_what_cannot_be_is_refused() {
     let place = flying();
     place.hhc(&["export", "case.ron", "--to", "csv", "-o", "t"]).done();
@@ -115,6 +131,7 @@ fn tables_and_mat_hold_the_same_and_what_cannot_be_is_refused() {
     };
     rejected(&["mat", "-o", "m"], &["m"]);
     rejected(&["python", "-o", "p"], &["case.ron", "json, csv or mat"]);
+    rejected(&["c", "--what", "t", "-o", "p"], &["case.ron", "leave it out"]);
     rejected(&["c", "--name", "2 pilots", "-o", "p"], &["case.ron", "2 pilots"]);
     assert_eq!(place.listing(), before, "nothing is written");
     place.write("still.ron", QUICK_CASE);
