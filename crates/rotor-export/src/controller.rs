@@ -215,7 +215,7 @@ fn about(spec: &ControllerSpec) -> Vec<String> {
 
 /// A number in C; no limit is infinity.
 fn c_number(value: f64) -> String {
-    if value == f64::INFINITY { "INFINITY".to_owned() } else { number(value) }
+    if value.is_infinite() { "INFINITY".to_owned() } else { number(value) }
 }
 
 fn c_list(values: impl IntoIterator<Item = f64>) -> String {

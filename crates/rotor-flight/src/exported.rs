@@ -7,6 +7,9 @@ use rotor_export::{Axis, ControllerSpec, Document, LabelledArray, TKnowledge};
 use rotor_study::case::{Case, FlightController, FlightValues, InflowChoice, TInflowChoice};
 use rotor_study::{HUB_OUTPUTS, HubLoads, TrimmedRotor};
 
+/// Highest harmonic of the flaps that the rotor along a path is linearised for.
+const HIGHEST_LINEARISED: usize = 10;
+
 /// T, baseline and conditions of a case at the knots of its flight, or at its own advance ratio where it has none, for every
 /// set of harmonics that it controls.
 ///
@@ -20,7 +23,7 @@ use rotor_study::{HUB_OUTPUTS, HubLoads, TrimmedRotor};
 /// Source: least squares, A. Gelb (ed.), *Applied Optimal Estimation* (1974), section 4.
 ///
 /// # Errors
-/// [`FlightError`]: trims, the linearised rotor, actuators, a set of harmonics.
+/// [`FlightError`]: trims, the linearised rotor, actuators, a set with a harmonic above 10.
 pub fn exported_case(case: &Case, model: &ActuatorModel) -> Result<Document, FlightError> {
     let level = FlightValues {
         start_advance_ratio: case.advance_ratio,
@@ -42,6 +45,11 @@ pub fn exported_case(case: &Case, model: &ActuatorModel) -> Result<Document, Fli
         arrays: vec![conditions(case, &points), baseline(case, &points), load_units(case)],
     };
     for set in sets {
+        if let Some(&n) = set.iter().find(|n| **n > HIGHEST_LINEARISED) {
+            let (what, value) =
+                ("harmonic of `control.harmonics` whose T is asked for (per rev)", n as f64);
+            return Err(FlightError::OutOfRange { what, value, expected: "1 to 10" });
+        }
         let values = FlightValues { harmonics: set.clone(), ..values.clone() };
         let flight = unguided(case, &values, &path, &model)?;
         document.arrays.extend(sensitivity(case, &set, &flight, &points)?);

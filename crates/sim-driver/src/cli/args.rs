@@ -42,7 +42,7 @@ pub enum Command {
     Predict(PredictArgs),
     /// The voltage under which an actuator moves as wanted, and the error left.
     Invert(InvertArgs),
-    /// An actuator and its inverse as C, Python, MATLAB or JSON; T of a case over speed as JSON, CSV or MAT, its controllers as C.
+    /// What other programs need: an actuator and its inverse; T, state space and controllers of a case.
     Export(ExportArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
     Diagnose(DiagnoseArgs),
