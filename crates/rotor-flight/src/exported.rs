@@ -129,7 +129,7 @@ fn notes(case: &Case, values: &FlightValues) -> Vec<String> {
     let mut notes = vec![
         "Z = Z0 + T u. Loads: cosine and sine of six hub loads in the fixed frame at the blade number per rev, X aft, Y starboard, Z up, over the units in `load_unit`. Controls: cosine and sine voltage of each flap at each harmonic, V; A cos(n psi - phase), psi = 0 over the tail.".to_owned(),
         format!("Inflow: {inflow}; in T it is {in_t}. Pilot controls are held in T."),
-        format!("T: central differences about zero control with {} V, flaps and bias settled in their hysteresis, all others at rest.", case.control.t_step_volt()),
+        format!("T: central differences about zero control with {} V, flaps and bias settled in their hysteresis, all others at rest.", case.t_step_volt()),
     ];
     let noise = values.noise_percent;
     notes.push(if noise > 0.0 {

@@ -7,7 +7,6 @@ use crate::choices::model_parser;
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use bench_study::identification::ModelChoice;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
 use std::path::PathBuf;

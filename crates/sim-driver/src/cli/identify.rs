@@ -6,7 +6,7 @@ use crate::SimError;
 use crate::actuator_use::{samples_csv, used};
 use crate::files::{
     DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
-    refuse_other_text, write_atomic, write_folder,
+    refuse_other_text, write_atomic,
 };
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
