@@ -122,7 +122,7 @@ fn controllers_of_a_flight_leave_as_c_and_fly_it() {
         let points = flown["flown"]["flights"][index]["points"].as_array().unwrap();
         let line = |point: &serde_json::Value| {
             let loads = numbers(&point["loads"]).into_iter().chain(point["advance_ratio"].as_f64());
-            loads.map(|value| format!("{value:?} ")).collect::<String>()
+            loads.map(|value| format!("{value:?}")).collect::<Vec<String>>().join(" ") + "\n"
         };
         place.write("c/in", &points.iter().map(line).collect::<String>());
         let text = Command::new("sh")
