@@ -2,7 +2,6 @@
 //! linearised rotor.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
-#![expect(clippy::print_stdout, reason = "the measured differences are worth seeing")]
 
 use crate::common::{paper_blade, paper_flaps, paper_model};
 use nalgebra::{Complex, DMatrix, DVector};
