@@ -1,6 +1,5 @@
 //! The MAT file in another program: `SciPy` reads every number as it was written. Nothing is checked where it is not there.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 #![expect(clippy::disallowed_methods, reason = "tests write what another program reads")]
 
 use rotor_export::{Axis, DataFormat, Document, LabelledArray, data_files};
