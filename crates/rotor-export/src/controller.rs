@@ -196,7 +196,7 @@ fn about(spec: &ControllerSpec) -> Vec<String> {
     [
         "Higher harmonic control of the flaps of a rotor, one cycle at a time:".to_owned(),
         format!(
-            "    {settling} revolutions settle, {window} are measured, then the control changes."
+            "    of its revolutions {settling} settle, {window} are measured; then the control changes."
         ),
         String::new(),
         format!("    loads    Z = harmonics of the hub loads at {} per rev", spec.load_harmonic),

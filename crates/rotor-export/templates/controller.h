@@ -3,6 +3,7 @@
 {{about}}
  *
  * C99, also C++. No allocation; all memory is in the state that is handed over.
+ * Built without fused operations (-ffp-contract=off) it gives the bits of the program that wrote it.
  * Written by hhc; the numbers are those of one case.
  */
 #ifndef {{NAME}}_H
@@ -31,7 +32,7 @@ typedef struct {
     double control_volt[{{NAME}}_CONTROLS];
     /* whether the limit of an amplitude bound in the last step */
     int is_limited;
-    /* loads of the last cycle, in their units */
+    /* loads of the last cycle, nondimensional */
     double loads[{{NAME}}_LOADS];
     /* the rest is memory */
     double target_volt[{{NAME}}_CONTROLS];

@@ -299,6 +299,9 @@ fn in_c(spec: &ControllerSpec, name: &str, samples: &[f64]) -> Vec<Vec<f64>> {
     arguments.extend(strict);
     arguments.extend(["-o", "program", "program.c", &source, "-lm"]);
     run(&folder, "cc", &arguments);
+    // it is C++ too
+    let plus = ["-x", "c++", "-std=c++17", "-Wall", "-Wextra", "-Werror", "-pedantic", "-c"];
+    run(&folder, "c++", &[&plus[..], &[&source, "-o", "plus.o"]].concat());
     let bytes: Vec<u8> = samples.iter().flat_map(|value| value.to_le_bytes()).collect();
     std::fs::write(folder.join("in"), bytes).unwrap();
     run(&folder, "./program", &[]);
