@@ -81,13 +81,13 @@ impl Constant {
 }
 
 /// A number that reads back as the same bits.
-pub(crate) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     format!("{value:?}")
 }
 
 /// Numbers between commas, in lines of at most `width` characters that end in `end` and begin with
 /// `indent`; the first line is not indented.
-pub(crate) fn wrapped(values: &[f64], width: usize, indent: &str, end: &str) -> String {
+pub fn wrapped(values: &[f64], width: usize, indent: &str, end: &str) -> String {
     let mut text = String::new();
     let mut length = 0;
     for (index, &value) in values.iter().enumerate() {

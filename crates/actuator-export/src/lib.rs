@@ -6,6 +6,7 @@
 //! | the files of one language | [`export`] |
 //! | what they leave out or do only nearly | [`remarks()`] |
 //! | what cannot be exported, with the remedy | [`ExportError`] |
+//! | texts of code and JSON, for other exporters | [`Library`], [`filled`], [`wrapped`], [`check_name`], [`Json`] |
 //!
 //! The generated code follows the arithmetic of `preisach-dyn` operation by operation; it needs nothing but the
 //! language's own mathematics. Readable text is part of the purpose: the equations, their sources and units stand in
@@ -13,6 +14,7 @@
 
 mod constant;
 mod error;
+mod json;
 mod laws;
 mod library;
 mod name;
@@ -21,7 +23,11 @@ mod remarks;
 mod stages;
 mod targets;
 
+pub use constant::{number, wrapped};
 pub use error::ExportError;
+pub use json::Json;
+pub use library::{Library, filled, prefixed};
+pub use name::check as check_name;
 pub use remarks::remarks;
 
 use plan::Plan;

@@ -1,12 +1,14 @@
 //! Pieces of code by name, and what is filled into them.
 
 /// The pieces of one language: texts cut at lines `@@ name`.
-pub(crate) struct Library {
+#[derive(Debug, Clone)]
+pub struct Library {
     pieces: Vec<(&'static str, &'static str)>,
 }
 
 impl Library {
-    pub(crate) fn new(texts: &[&'static str]) -> Self {
+    /// Texts cut at their lines `@@ name`.
+    pub fn new(texts: &[&'static str]) -> Self {
         let pieces = texts.iter().flat_map(|text| {
             let cut = text.split("@@ ").skip(1);
             cut.map(|piece| piece.split_once('\n').unwrap_or((piece, "")))
@@ -15,13 +17,13 @@ impl Library {
     }
 
     /// The piece of a name; an empty text where the language needs none.
-    pub(crate) fn piece(&self, name: &str) -> &'static str {
+    pub fn piece(&self, name: &str) -> &'static str {
         let found = self.pieces.iter().find(|(known, _)| *known == name);
         found.map_or("", |(_, text)| text.trim_end())
     }
 
     /// The pieces of some names, an empty line between them.
-    pub(crate) fn pieces<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> String {
+    pub fn pieces<'a>(&self, names: impl IntoIterator<Item = &'a str>) -> String {
         let pieces = names.into_iter().map(|name| self.piece(name));
         pieces.filter(|piece| !piece.is_empty()).collect::<Vec<_>>().join("\n\n")
     }
@@ -29,7 +31,7 @@ impl Library {
 
 /// A text with every `{{key}}` replaced by its value; a key on a line of its own that has no text is left out with
 /// its line.
-pub(crate) fn filled(text: &str, values: &[(&str, &str)]) -> String {
+pub fn filled(text: &str, values: &[(&str, &str)]) -> String {
     let mut text = text.to_owned();
     for (key, value) in values {
         let mark = format!("{{{{{key}}}}}");
@@ -42,7 +44,7 @@ pub(crate) fn filled(text: &str, values: &[(&str, &str)]) -> String {
 }
 
 /// Lines, each behind a prefix; nothing behind the prefix of an empty one.
-pub(crate) fn prefixed<S: AsRef<str>>(lines: &[S], prefix: &str) -> String {
+pub fn prefixed<S: AsRef<str>>(lines: &[S], prefix: &str) -> String {
     let lines = lines.iter().map(|line| format!("{prefix}{}", line.as_ref()));
     lines.map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
 }

@@ -172,7 +172,10 @@ const RESERVED: &[&str] = &[
 ];
 
 /// Refuses a name that is no identifier in C, C++, Python and MATLAB.
-pub(crate) fn check(name: &str) -> Result<(), ExportError> {
+///
+/// # Errors
+/// [`ExportError::Name`].
+pub fn check(name: &str) -> Result<(), ExportError> {
     let fault = if name.is_empty() {
         "is empty"
     } else if !name.starts_with(|c: char| c.is_ascii_lowercase()) {

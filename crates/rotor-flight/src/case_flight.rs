@@ -98,10 +98,7 @@ pub fn fly_case(
 ) -> Result<FlownCase, FlightError> {
     let path = path_of(case, values)?;
     done();
-    let (low, high) = case.actuator.range_volt;
-    let range_volt =
-        VoltageRange::new(low, high).map_err(|source| FlightError::Actuator { flap: 0, source })?;
-    let model = ActuatorModel { range_volt, ..model.clone() };
+    let model = ranged(case, model)?;
     let flight = flight_of(case, values, &path, &model)?;
     let start = path.loads(flight.state_at(0.0), &[])?;
     let disturbed_s = last_disturbance_s(values);
@@ -115,8 +112,16 @@ pub fn fly_case(
     Ok(FlownCase { start, flights })
 }
 
+/// An actuator with the range of voltages of a case.
+pub(crate) fn ranged(case: &Case, model: &ActuatorModel) -> Result<ActuatorModel, FlightError> {
+    let (low, high) = case.actuator.range_volt;
+    let range_volt =
+        VoltageRange::new(low, high).map_err(|source| FlightError::Actuator { flap: 0, source })?;
+    Ok(ActuatorModel { range_volt, ..model.clone() })
+}
+
 /// The rotor along the schedule of a flight.
-fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, FlightError> {
+pub(crate) fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, FlightError> {
     let (from, to) = (values.start_advance_ratio, values.end_advance_ratio);
     let (low, span) = (from.min(to), (to - from).abs());
     let knots = if values.is_level() { 1 } else { values.knots };
@@ -144,7 +149,8 @@ fn ramp([from, to]: [f64; 2], at_s: f64, length_s: f64) -> Vec<(f64, f64)> {
     vec![(at_s, from), (at_s + length_s, to)]
 }
 
-fn flight_of<'a>(
+/// The flight of a case without what it needs to know of T.
+pub(crate) fn unguided<'a>(
     case: &Case,
     values: &FlightValues,
     path: &'a RotorPath,
@@ -159,7 +165,7 @@ fn flight_of<'a>(
         rate_limit_volt: values.rate_limit_volt,
         ..RelaxedSettings::of_layout(&layout)
     };
-    let mut flight = Flight {
+    Ok(Flight {
         path,
         model,
         actuator_rev_hz: case.actuator.bench_rev_hz,
@@ -183,7 +189,17 @@ fn flight_of<'a>(
         step_volt: case.t_step_volt(),
         settings,
         layout,
-    };
+    })
+}
+
+/// The flight of a case, its cost and least effort by its start.
+pub(crate) fn flight_of<'a>(
+    case: &Case,
+    values: &FlightValues,
+    path: &'a RotorPath,
+    model: &'a ActuatorModel,
+) -> Result<Flight<'a>, FlightError> {
+    let mut flight = unguided(case, values, path, model)?;
     let state = flight.state_at(0.0);
     let start = HubLoads::from_parts(path.loads(state, &[])?);
     let weights: LoadWeights =
@@ -194,7 +210,12 @@ fn flight_of<'a>(
     Ok(flight)
 }
 
-fn guidance_of(controller: FlightController, case: &Case, values: &FlightValues) -> Guidance {
+/// How a controller knows T.
+pub(crate) fn guidance_of(
+    controller: FlightController,
+    case: &Case,
+    values: &FlightValues,
+) -> Guidance {
     match controller {
         FlightController::Fixed => Guidance::Fixed,
         FlightController::Scheduled => Guidance::Scheduled,

@@ -88,6 +88,11 @@ impl Flight<'_> {
         FlapMarch::new(self.model, &self.layout, self.actuator_rev_hz, self.bias_volt)
     }
 
+    /// Standard deviation of a load in one revolution, from the loads without control at the start.
+    pub(crate) fn noise(&self, start: &[f64]) -> f64 {
+        self.noise_share * (start.iter().map(|z| z * z).sum::<f64>() / start.len() as f64).sqrt()
+    }
+
     /// Where the rotor is at a time, s.
     pub fn state_at(&self, time_s: f64) -> FlightState {
         FlightState {

@@ -124,13 +124,12 @@ impl Flown<'_> {
 pub fn fly(flight: &Flight<'_>, guidance: &Guidance) -> Result<Vec<FlightPoint>, FlightError> {
     flight.check()?;
     let start = flight.path.loads(flight.state_at(0.0), &[])?;
-    let rms = (start.iter().map(|z| z * z).sum::<f64>() / start.len() as f64).sqrt();
     let mut pilot = Pilot::new(flight, guidance, &start)?;
     let mut flown = Flown {
         flight,
         flaps: flight.flaps()?,
         weights: flight.settings.load_weights.diagonal(HUB_OUTPUTS)?,
-        noise: flight.noise_share * rms,
+        noise: flight.noise(&start),
         random: ChaCha8Rng::seed_from_u64(flight.seed),
         revolutions: 0,
     };

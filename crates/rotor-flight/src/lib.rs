@@ -7,26 +7,32 @@
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
 //! - *Failures* ([`failures_of_case`]): what control reaches when a flap, an actuator or a load cell of one blade fails.
+//! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
+//!   ([`controllers_of_case`]); the rotor as state space ([`state_space_of_case`]).
 //!
 //! Values in, values out: no file, no terminal.
 
 mod case_flight;
 mod error;
+mod exported;
 mod failures;
 mod flaps;
 mod flight;
 mod flown;
 mod path;
 mod pilot;
+mod state_space;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
+pub use exported::{controllers_of_case, exported_case};
 pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
+pub use state_space::state_space_of_case;
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -103,6 +103,16 @@ impl RotorPath {
         &self.advance_ratios
     }
 
+    /// Every trim with its place, before a step of the thrust and after it.
+    pub(crate) fn rotors(&self) -> impl Iterator<Item = (FlightState, &TrimmedRotor)> {
+        self.rows.iter().zip([0.0, 1.0]).flat_map(|(row, thrust_share)| {
+            let places = self.advance_ratios.iter().zip(row);
+            places.map(move |(&advance_ratio, rotor)| {
+                (FlightState { advance_ratio, thrust_share }, rotor)
+            })
+        })
+    }
+
     /// The knots about a state: advance ratio, rotor and weight.
     fn about(&self, state: FlightState) -> impl Iterator<Item = (f64, &TrimmedRotor, f64)> {
         let share = if self.rows.len() > 1 { state.thrust_share } else { 0.0 };

@@ -17,6 +17,7 @@ pub use answers::linearised::{
 };
 pub use answers::section_lift::SectionLift;
 pub use answers::stability::{BladeMotion, SectionLags, Stability};
+pub use answers::state_space::{BladeStateSpace, BladesTogether, MultibladeStateSpace};
 pub use answers::station_loads::{LoadHistory, StationLoads};
 pub use error::ResponseError;
 pub use loads::power::PowerBalance;

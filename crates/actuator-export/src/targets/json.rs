@@ -1,88 +1,12 @@
 //! JSON: the parameters of the model with names, units and meanings.
 
-use crate::constant::number;
+use crate::json::Json;
 use crate::plan::Plan;
 use crate::remarks;
 use preisach_dyn::{
     ActuatorLaw, AmplifierStage, Envelope, LinkageStage, PlayMap, PreisachGrid, RateForm,
     TimeOrder, VoltageRange,
 };
-
-/// A value of JSON.
-enum Json {
-    Number(f64),
-    Count(usize),
-    Text(String),
-    List(Vec<Json>),
-    /// Fields in their order.
-    Record(Vec<(&'static str, Json)>),
-}
-
-impl Json {
-    fn text(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-
-    fn numbers(values: &[f64]) -> Self {
-        Self::List(values.iter().map(|value| Self::Number(*value)).collect())
-    }
-
-    /// Written with an indent; lists of numbers stay on one line.
-    fn write(&self, indent: usize, text: &mut String) {
-        let inside = " ".repeat(indent + 2);
-        match self {
-            Self::Number(value) => text.push_str(&number(*value)),
-            Self::Count(count) => text.push_str(&count.to_string()),
-            Self::Text(content) => text.push_str(&quoted(content)),
-            Self::List(items) => {
-                let flat =
-                    items.iter().all(|item| matches!(item, Self::Number(_) | Self::Count(_)));
-                text.push('[');
-                for (index, item) in items.iter().enumerate() {
-                    text.push_str(if index > 0 { "," } else { "" });
-                    if flat {
-                        text.push_str(if index > 0 { " " } else { "" });
-                    } else {
-                        text.push('\n');
-                        text.push_str(&inside);
-                    }
-                    item.write(indent + 2, text);
-                }
-                if !flat {
-                    text.push('\n');
-                    text.push_str(&inside[2..]);
-                }
-                text.push(']');
-            }
-            Self::Record(fields) => {
-                text.push('{');
-                for (index, (name, value)) in fields.iter().enumerate() {
-                    text.push_str(if index > 0 { ",\n" } else { "\n" });
-                    text.push_str(&inside);
-                    text.push_str(&quoted(name));
-                    text.push_str(": ");
-                    value.write(indent + 2, text);
-                }
-                text.push('\n');
-                text.push_str(&inside[2..]);
-                text.push('}');
-            }
-        }
-    }
-}
-
-fn quoted(text: &str) -> String {
-    let mut quoted = String::from("\"");
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => quoted.push(' '),
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
-}
 
 pub(crate) fn files(plan: &Plan<'_>) -> Vec<(String, String)> {
     let (model, law) = (plan.model, &plan.law);
@@ -116,10 +40,7 @@ pub(crate) fn files(plan: &Plan<'_>) -> Vec<(String, String)> {
         ("linkage", Json::List(model.linkage.iter().map(linkage).collect())),
         ("remarks", Json::List(remarks)),
     ]);
-    let mut text = String::new();
-    record.write(0, &mut text);
-    text.push('\n');
-    vec![(format!("{}.json", plan.name), text)]
+    vec![(format!("{}.json", plan.name), record.document())]
 }
 
 fn range(range: VoltageRange) -> Json {

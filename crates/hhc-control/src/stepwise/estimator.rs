@@ -60,10 +60,9 @@ impl EstimatorSettings {
     }
 }
 
-/// Noise that is not told: where its estimate starts and its least value, shares of the loads; pairs that the start
-/// counts for, and the memory, in pairs.
+/// Noise that is not told: where its estimate starts, share of the loads; pairs that the start counts for, and the memory,
+/// in pairs.
 const NOISE_START: f64 = 0.1;
-const NOISE_FLOOR: f64 = 1e-4;
 const NOISE_START_PAIRS: f64 = 4.0;
 const NOISE_MEMORY_PAIRS: f64 = 50.0;
 /// Pairs until an estimated noise is relied on.
@@ -134,6 +133,9 @@ fn mean_square(numbers: &[f64]) -> f64 {
 }
 
 impl LoadEstimator {
+    /// Least variance of a noise that is estimated, over the mean square of the loads at the start.
+    pub const NOISE_FLOOR_VARIANCE: f64 = 1e-4 * 1e-4;
+
     /// The estimate as it stands after a first measured state, with a T0 (1/V).
     ///
     /// # Errors
@@ -215,7 +217,7 @@ impl LoadEstimator {
         if self.settings.noise_share.is_none() {
             self.pairs += 1.0;
             let memory = (NOISE_START_PAIRS + self.pairs).min(NOISE_MEMORY_PAIRS);
-            let floor = NOISE_FLOOR * NOISE_FLOOR * self.scale;
+            let floor = Self::NOISE_FLOOR_VARIANCE * self.scale;
             self.noise_variance = (r + (noise - r) / memory).max(floor);
         }
         Ok(observed)
@@ -344,6 +346,11 @@ impl LoadEstimator {
     /// The estimate of T, 1/V.
     pub fn t(&self) -> &TMatrix {
         &self.t
+    }
+
+    /// Covariance of `theta_i = (Z0_i, T_i u_full)`, the same for every load: nondimensional loads squared.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
     }
 
     /// Standard deviation of the noise of one load, told or estimated, nondimensional.

@@ -14,6 +14,7 @@ mod sweep;
 
 pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
+pub use mat::{MatValue, Variables, mat_file, read_variables};
 
 use crate::dataset::DatasetKind;
 use crate::error::DataError;

@@ -10,4 +10,5 @@ pub(crate) mod rigid;
 pub(crate) mod section_lift;
 pub(crate) mod settling;
 pub(crate) mod stability;
+pub(crate) mod state_space;
 pub(crate) mod station_loads;

@@ -143,6 +143,11 @@ impl RevolutionLoads {
         Self { lifting: revolution.lifting(), points, power, accelerations: samples.qdd.clone() }
     }
 
+    /// Root loads at every azimuth, forces then moments, in the axes that turn with the blade.
+    pub(crate) fn roots(&self) -> impl Iterator<Item = [f64; 6]> {
+        self.points.iter().map(|at| at.root)
+    }
+
     pub(crate) fn root(&self, time: &TimeElements, count: usize) -> SixLoads {
         let component = |k: usize| series(time, self.points.iter().map(|at| at.root[k]), count);
         SixLoads { components: std::array::from_fn(component) }

@@ -12,6 +12,7 @@ mod nonlinear;
 mod physics;
 mod power;
 mod stability;
+mod state_space;
 mod station_loads;
 mod wake_circulation;
 mod wake_lines;

@@ -11,9 +11,9 @@ use crate::series::scaled;
 use nalgebra::DMatrix;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{
-    Condition, FlapDirection, InflowState, OtherBlade, ResponseError, ResponseTolerances, Rotor,
-    RotorSolution, RotorSolver, SectionLift, SixLoads, Stability, StationAirloads, StationLoads,
-    TipMotion, dissimilar_hub_loads,
+    BladeStateSpace, Condition, FlapDirection, InflowState, OtherBlade, ResponseError,
+    ResponseTolerances, Rotor, RotorSolution, RotorSolver, SectionLift, SixLoads, Stability,
+    StationAirloads, StationLoads, TipMotion, dissimilar_hub_loads,
 };
 use rotor_wake::InflowModel;
 use std::collections::BTreeSet;
@@ -249,6 +249,14 @@ impl TrimmedRotor {
     /// As [`RotorSolver::stability`].
     pub fn stability(&self) -> Result<Stability, ResponseError> {
         self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor)
+    }
+
+    /// State space of one blade about the trim, flaps at rest, the inflow held.
+    ///
+    /// # Errors
+    /// As [`RotorSolver::state_space`].
+    pub fn state_space(&self) -> Result<BladeStateSpace, ResponseError> {
+        self.solver.state_space(&self.flaps_at_rest(), &self.trim.rotor)
     }
 
     /// The section of the trimmed rotor that lifts hardest.

@@ -18,6 +18,7 @@ mod tests;
 
 pub use describe::{case_format_page, starting_case};
 pub use measured::MeasuredRotor;
+pub(crate) use read::is_actuator_file;
 pub use read::{
     ActuatorSource, CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
     with_actuator_file,

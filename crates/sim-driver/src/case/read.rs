@@ -174,7 +174,7 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, Problems> {
 }
 
 /// Whether a text says that it is an actuator file.
-fn is_actuator_file(source: &Source) -> bool {
+pub(crate) fn is_actuator_file(source: &Source) -> bool {
     source.text.lines().any(|line| line.trim().trim_end_matches(',') == "kind: Actuator")
 }
 

@@ -6,9 +6,7 @@ use crate::choices::choice_parser;
 use crate::choices::model_parser;
 use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
-use actuator_export::Target;
 use bench_study::identification::ModelChoice;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use flap_aero::{AttachedFlowModel, Motion};
 use std::path::PathBuf;
@@ -43,7 +41,7 @@ pub enum Command {
     Predict(PredictArgs),
     /// The voltage under which an actuator moves as wanted, and the error left.
     Invert(InvertArgs),
-    /// An actuator and its inverse as step functions: C, Python, MATLAB, or its parameters as JSON.
+    /// What other programs need: an actuator and its inverse; T, state space and controllers of a case.
     Export(ExportArgs),
     /// Find what a simulation of measured data lacks: cause, extended model, gain.
     Diagnose(DiagnoseArgs),
@@ -272,34 +270,54 @@ pub struct InvertArgs {
     pub format: Format,
 }
 
+/// What `hhc export` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub enum ExportForm {
+    /// C99: an actuator and its inverse, or the controllers of the flight of a case.
+    C,
+    /// Python: an actuator.
+    Python,
+    /// MATLAB code: an actuator.
+    Matlab,
+    /// JSON: the parameters of an actuator, or T of a case.
+    Json,
+    /// Tables: T of a case.
+    Csv,
+    /// MAT file of level 5: T of a case.
+    Mat,
+}
+
+/// What of a case `hhc export` writes as numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum ExportMatrices {
+    /// T of every set of harmonics at the knots of the flight, with baseline, conditions and covariance.
+    #[default]
+    T,
+    /// The linearised rotor at the trim of the case: one blade over the azimuth, all blades with constant coefficients.
+    StateSpace,
+}
+
 /// `hhc export`.
 #[derive(Debug, Clone, Args)]
 pub struct ExportArgs {
-    /// Actuator file, from `hhc identify`.
-    #[arg(value_name = "ACTUATOR.ron")]
-    pub actuator: PathBuf,
-    /// Language to write.
-    #[arg(long, value_parser = export_parser())]
-    pub to: Target,
-    /// Samples per second of the step functions.
+    /// Actuator file, from `hhc identify`, or a case; its text says which.
+    #[arg(value_name = "ACTUATOR.ron|CASE.ron")]
+    pub file: PathBuf,
+    /// Form to write.
+    #[arg(long, value_enum)]
+    pub to: ExportForm,
+    /// Numbers of a case to write as json, csv or mat; T if left out.
+    #[arg(long, value_enum)]
+    pub what: Option<ExportMatrices>,
+    /// Samples per second of the step functions of an actuator.
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,
-    /// Name of files and functions: a lower-case identifier.
-    #[arg(long, value_name = "NAME", default_value = "flap_actuator")]
-    pub name: String,
+    /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `rotor` of a case if left out.
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
     /// Folder to write, never overwritten.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-}
-
-/// `c`, `python`, `matlab` or `json`.
-fn export_parser() -> impl TypedValueParser<Value = Target> {
-    PossibleValuesParser::new(["c", "python", "matlab", "json"]).map(|word| match word.as_str() {
-        "c" => Target::C,
-        "python" => Target::Python,
-        "matlab" => Target::Matlab,
-        _ => Target::Json,
-    })
 }
 
 /// `hhc import`.

@@ -1,12 +1,12 @@
 //! `hhc identify`.
 
-use super::args::{ExportArgs, IdentifyArgs, InvertArgs, PredictArgs};
+use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::actuator_use::{samples_csv, used};
 use crate::files::{
     DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
-    refuse_other_text, write_atomic, write_folder,
+    refuse_other_text, write_atomic,
 };
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
@@ -129,22 +129,6 @@ pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
         args.format,
         StoredActuator::inverted,
     )
-}
-
-pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
-    let own = read_actuator(&Source::read(&args.actuator)?)?;
-    let files = actuator_export::export(&own.model, &args.name, 1.0 / args.sampling_hz, args.to);
-    let files = files.map_err(|error| {
-        let place = Place::file(args.actuator.display().to_string());
-        Problem::new(place, Fault::Refused { message: error.to_string() })
-    })?;
-    let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    let text = format!("{} written to {}\n", names.join(", "), args.output.display());
-    warn(&actuator_export::remarks(&own.model), Format::Details);
-    let files: Vec<(String, Vec<u8>)> =
-        files.into_iter().map(|(name, text)| (name, text.into_bytes())).collect();
-    write_folder(&args.output, &files)?;
-    print(&text)
 }
 
 /// Uses an actuator on a record; writes and prints what it did.

@@ -5,6 +5,7 @@ mod case_runner;
 mod compare;
 mod data;
 mod diagnose;
+mod export;
 mod fly;
 mod identify;
 mod rotor;
@@ -69,7 +70,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Identify(args)) => identify::identify(args),
         Some(Command::Predict(args)) => identify::predict(args),
         Some(Command::Invert(args)) => identify::invert(args),
-        Some(Command::Export(args)) => identify::export(args),
+        Some(Command::Export(args)) => export::export(args),
         Some(Command::Diagnose(args)) => diagnose::diagnose(args),
         Some(Command::Ladder(args)) => diagnose::ladder(args),
         Some(Command::Import(args)) => data::import(args),

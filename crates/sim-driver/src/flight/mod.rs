@@ -8,13 +8,14 @@ pub use page::flight_html;
 
 use crate::SimError;
 use crate::actuator::case_actuators;
-use crate::case::{FailureNotice, FlightValues, LoadedCase};
+use crate::case::{Case, FailureNotice, FlightValues, LoadedCase};
 use crate::output::{Printable, Sheet};
 use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
+use preisach_dyn::ActuatorModel;
 use report_page::Section;
 use rotor_flight::{
-    FailureStudy, FlightPoint, FlownCase, FlownController, failures_of_case, fly_case,
+    FailureStudy, FlightError, FlightPoint, FlownCase, FlownController, failures_of_case, fly_case,
 };
 use rotor_study::HubLoads;
 use serde::Serialize;
@@ -50,10 +51,7 @@ pub struct FlightResult {
 /// A case without a flight; what its actuators are refused for; [`SimError::Flight`].
 pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, SimError> {
     let case = &loaded.case;
-    let Some(values) = &case.flight else {
-        let fault = Fault::Refused { message: NO_FLIGHT.to_owned() };
-        return Err(Problem::new(loaded.index.place("flight"), fault).into());
-    };
+    let values = flight_values(loaded)?;
     // what is said of the actuator is of the harmonics flown
     let mut flying = loaded.clone();
     flying.case.control.harmonics = vec![values.harmonics.clone()];
@@ -67,10 +65,7 @@ pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, S
         Ok((flown, failures))
     });
     progress.finish();
-    let (flown, failures) = found.map_err(|source| SimError::Flight {
-        place: loaded.index.place(source.field()),
-        source: Box::new(source),
-    })?;
+    let (flown, failures) = found.map_err(|source| flight_error(loaded, source))?;
     let scales = case.scales();
     Ok(FlightResult {
         title: case.title.clone(),
@@ -82,6 +77,35 @@ pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, S
         flown,
         failures,
     })
+}
+
+/// An error of a flight at the field of the case that asked for it.
+fn flight_error(loaded: &LoadedCase, source: FlightError) -> SimError {
+    SimError::Flight { place: loaded.index.place(source.field()), source: Box::new(source) }
+}
+
+/// What leaves a case, as values; its warnings beside.
+///
+/// # Errors
+/// What its actuators are refused for; [`SimError::Flight`].
+pub(crate) fn leaving<T>(
+    loaded: &LoadedCase,
+    of: fn(&Case, &ActuatorModel) -> Result<T, FlightError>,
+) -> Result<(T, Vec<String>), SimError> {
+    let actuators = case_actuators(loaded)?;
+    let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
+    let found = of(&loaded.case, model).map_err(|source| flight_error(loaded, source))?;
+    Ok((found, [&loaded.warnings[..], &actuators.warnings[..]].concat()))
+}
+
+/// The flight of a case.
+///
+/// # Errors
+/// A case without one.
+pub(crate) fn flight_values(loaded: &LoadedCase) -> Result<&FlightValues, Problem> {
+    let fault = || Fault::Refused { message: NO_FLIGHT.to_owned() };
+    let problem = || Problem::new(loaded.index.place("flight"), fault());
+    loaded.case.flight.as_ref().ok_or_else(problem)
 }
 
 /// What truth is and what happens, in sentences.

@@ -8,6 +8,7 @@ mod commands;
 mod compare;
 mod diagnosis_page;
 mod disk;
+mod export;
 mod fly;
 mod identify;
 mod identify_page;

@@ -9,6 +9,7 @@ mod select;
 #[cfg(test)]
 mod tests;
 mod value;
+mod write;
 
 use super::columns::{ColumnOptions, choose, name_columns};
 use super::gather::Reduction;
@@ -16,6 +17,8 @@ use super::{ImportKind, Table};
 use crate::problem::{Fault, Place, Problem, Problems};
 
 pub(super) use value::byte_order;
+pub use value::{MatValue, Variables, read_variables};
+pub use write::mat_file;
 
 /// Reads a record out of a MAT file; also what was taken, in words.
 pub(super) fn read_mat(

@@ -6,9 +6,14 @@ use std::io::Read;
 
 /// An array of a MAT file.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum MatValue {
+pub enum MatValue {
     /// Numbers, the first index running fastest; the imaginary part is left out.
-    Numeric { sizes: Vec<usize>, values: Vec<f64> },
+    Numeric {
+        /// Length along every index, two at least.
+        sizes: Vec<usize>,
+        /// As many as the sizes multiply to.
+        values: Vec<f64>,
+    },
     /// Characters.
     Text(String),
     /// Cells, the first index running fastest.
@@ -22,14 +27,14 @@ pub(super) enum MatValue {
 }
 
 /// The variables of a file, in their order.
-pub(super) type Variables = Vec<(String, MatValue)>;
+pub type Variables = Vec<(String, MatValue)>;
 
 /// Deepest nesting of structures and cells.
 const DEEPEST: usize = 32;
 /// Most bytes of the decompressed variables of a file together.
 const MOST_DECOMPRESSED: usize = 1 << 30;
 /// Length of the header.
-const HEADER: usize = 128;
+pub(super) const HEADER: usize = 128;
 
 /// Whether a MAT file is little-endian, by its first bytes; none if it is no MAT file. `named_mat`: the
 /// file's name ends in `.mat`, without which level 4, which has no signature, is not looked for.
@@ -74,7 +79,7 @@ pub(in crate::import) fn byte_order(start: &[u8], named_mat: bool) -> Option<Res
 ///
 /// # Errors
 /// What is damaged, with the byte offset; those of [`byte_order`].
-pub(super) fn read_variables(file: &[u8]) -> Result<Variables, Fault> {
+pub fn read_variables(file: &[u8]) -> Result<Variables, Fault> {
     let unknown = || {
         let at = Bytes::new(&[], 124.min(file.len()), true, false);
         Err(at.fault("the header names no byte order: it is no MAT file of level 5"))
@@ -122,10 +127,10 @@ pub(super) fn inflate(bytes: &Bytes<'_>, room: usize) -> Result<Vec<u8>, Fault> 
 }
 
 /// Classes of arrays.
-const CELL: u32 = 1;
-const STRUCT: u32 = 2;
+pub(super) const CELL: u32 = 1;
+pub(super) const STRUCT: u32 = 2;
 const OBJECT: u32 = 3;
-const CHAR: u32 = 4;
+pub(super) const CHAR: u32 = 4;
 const SPARSE: u32 = 5;
 /// The last of the numeric classes, which begin behind `SPARSE`.
 const LAST_NUMERIC: u32 = 15;

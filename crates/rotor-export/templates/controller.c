@@ -1,0 +1,312 @@
+/* {{title}}: see {{name}}.h. */
+
+#include "{{name}}.h"
+
+#include <float.h>
+#include <math.h>
+
+enum {
+    FLAPS = {{NAME}}_FLAPS,
+    WIDTH = 2 * {{NAME}}_HARMONICS,
+    CONTROLS = {{NAME}}_CONTROLS,
+    PAIRS = CONTROLS / 2,
+    CHANNELS = {{NAME}}_CHANNELS,
+    LOADS = {{NAME}}_LOADS,
+    SAMPLES = {{NAME}}_SAMPLES_PER_REV,
+    WINDOW = {{NAME}}_WINDOW_REV,
+    SETTLING = {{NAME}}_SETTLING_REV * SAMPLES
+};
+
+{{constants}}
+
+/* Sum of a[k sa] b[k sb]; eight partial sums, so that every bit is that of the program it was written by. */
+static double dot(const double *a, int sa, const double *b, int sb, int count)
+{
+    double sum = 0.0;
+    int k = 0, i;
+    if (count >= 8) {
+        double part[8] = {0.0};
+        for (; count - k >= 8; k += 8) {
+            for (i = 0; i < 8; ++i) {
+                part[i] += a[(k + i) * sa] * b[(k + i) * sb];
+            }
+        }
+        for (i = 0; i < 4; ++i) {
+            sum += part[i] + part[i + 4];
+        }
+    }
+    for (; k < count; ++k) {
+        sum += a[k * sa] * b[k * sb];
+    }
+    return sum;
+}
+
+/* ---- T ---------------------------------------------------------------------------------------- */
+
+{{t_code}}
+
+/* ---- least of x'Nx/2 + g'x with every pair of x in a disc -------------------------------------- */
+
+/* Iterations at most, and the change of the scaled controls at which they end. */
+enum { ITERATIONS = 60 };
+static const double TOLERANCE = 1e-10;
+
+/* Without the limits, by Cholesky's factors; whether that keeps them. */
+static int solve_freely(double normal[CONTROLS][CONTROLS], const double linear[CONTROLS], double x[CONTROLS])
+{
+    static const double epsilon = DBL_EPSILON;
+    double factor[CONTROLS][CONTROLS];
+    int i, j, k;
+    for (j = 0; j < CONTROLS; ++j) {
+        for (i = j; i < CONTROLS; ++i) {
+            double known = 0.0, left;
+            for (k = 0; k < j; ++k) {
+                known += factor[i][k] * factor[j][k];
+            }
+            left = normal[i][j] - known;
+            if (i == j && left <= epsilon * normal[j][j]) {
+                return 0;
+            }
+            factor[i][j] = i == j ? sqrt(left) : left / factor[j][j];
+        }
+    }
+    for (i = 0; i < CONTROLS; ++i) {
+        double sum = -linear[i];
+        for (k = 0; k < i; ++k) {
+            sum -= factor[i][k] * x[k];
+        }
+        x[i] = sum / factor[i][i];
+    }
+    for (i = CONTROLS - 1; i >= 0; --i) {
+        const int rest = CONTROLS - 1 - i;
+        const double known = rest > 0 ? dot(&factor[i + 1][i], CONTROLS, &x[i + 1], 1, rest) : 0.0;
+        x[i] = (x[i] - known) / factor[i][i];
+    }
+    for (i = 0; i < PAIRS; ++i) {
+        if (!(hypot(x[2 * i], x[2 * i + 1]) <= LIMIT_VOLT[i])) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
+/* Within the limits, by the accelerated projected gradient with restarts
+ * (Y. Nesterov 2004; B. O'Donoghue, E. Candes 2015). */
+static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linear[CONTROLS], double x[CONTROLS])
+{
+    double scale[PAIRS], ahead[CONTROLS], slope[CONTROLS], before[CONTROLS];
+    double steepest = DBL_MIN, momentum = 1.0;
+    int i, j, k, iteration;
+    for (i = 0; i < PAIRS; ++i) {
+        const double mean = 0.5 * (normal[2 * i][2 * i] + normal[2 * i + 1][2 * i + 1]);
+        scale[i] = mean > 0.0 ? 1.0 / sqrt(mean) : 1.0;
+    }
+    for (i = 0; i < CONTROLS; ++i) {
+        double sum = 0.0;
+        for (j = 0; j < CONTROLS; ++j) {
+            sum += fabs(normal[i][j]) * scale[i / 2] * scale[j / 2];
+        }
+        steepest = fmax(steepest, sum);
+    }
+    for (k = 0; k < CONTROLS; ++k) {
+        ahead[k] = x[k];
+    }
+    for (iteration = 0; iteration < ITERATIONS; ++iteration) {
+        double changed = 0.0, largest = 0.0, uphill = 0.0, next, carry;
+        for (i = 0; i < CONTROLS; ++i) {
+            slope[i] = linear[i];
+            before[i] = x[i];
+        }
+        for (j = 0; j < CONTROLS; ++j) {
+            for (i = 0; i < CONTROLS; ++i) {
+                slope[i] += normal[i][j] * ahead[j];
+            }
+        }
+        for (i = 0; i < PAIRS; ++i) {
+            const double step = scale[i] * scale[i] / steepest;
+            const double to[2] = {ahead[2 * i] - step * slope[2 * i], ahead[2 * i + 1] - step * slope[2 * i + 1]};
+            const double length = hypot(to[0], to[1]);
+            const double share = length > LIMIT_VOLT[i] ? LIMIT_VOLT[i] / length : 1.0;
+            x[2 * i] = share * to[0];
+            x[2 * i + 1] = share * to[1];
+        }
+        for (k = 0; k < CONTROLS; ++k) {
+            const double change = x[k] - before[k];
+            uphill += slope[k] * change;
+            changed = fmax(changed, fabs(change) / scale[k / 2]);
+            largest = fmax(largest, fabs(x[k]) / scale[k / 2]);
+        }
+        if (changed <= TOLERANCE * largest) {
+            break;
+        }
+        next = uphill > 0.0 ? 1.0 : sqrt(fma(momentum, momentum, 0.25)) + 0.5;
+        carry = uphill > 0.0 ? 0.0 : (momentum - 1.0) / next;
+        momentum = next;
+        for (k = 0; k < CONTROLS; ++k) {
+            ahead[k] = x[k] + carry * (x[k] - before[k]);
+        }
+    }
+}
+
+/* ---- relaxed step ----------------------------------------------------------------------------- */
+
+/* J = Z'WZ + rho u'u + du'S du;  u <- u + g c (argmin J in the discs - u), c by the rate. */
+static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outputs[LOADS])
+{
+    double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
+    double free_volt[CONTROLS], fastest = 0.0, share;
+    int i, j, k, flap;
+    for (i = 0; i < LOADS; ++i) {
+        z[i] = s->is_load_lost[i] ? 0.0 : outputs[i];
+        for (k = 0; k < CONTROLS; ++k) {
+            weighted[i][k] = t[i][k] * (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]);
+            z[i] -= t[i][k] * s->control_volt[k];
+        }
+    }
+    for (j = 0; j < CONTROLS; ++j) {
+        linear[j] = dot(&weighted[0][j], CONTROLS, z, 1, LOADS);
+        for (k = 0; k < CONTROLS; ++k) {
+            normal[j][k] = dot(&t[0][j], CONTROLS, &weighted[0][k], CONTROLS, LOADS);
+        }
+        normal[j][j] += EFFORT_WEIGHT + RATE_WEIGHT;
+        linear[j] -= RATE_WEIGHT * s->control_volt[j];
+    }
+    for (flap = 0; flap < FLAPS; ++flap) {
+        for (k = flap * WIDTH; s->is_flap_lost[flap] && k < (flap + 1) * WIDTH; ++k) {
+            for (j = 0; j < CONTROLS; ++j) {
+                normal[k][j] = normal[j][k] = 0.0;
+            }
+            normal[k][k] = 1.0;
+            linear[k] = 0.0;
+        }
+    }
+    s->is_limited = !solve_freely(normal, linear, free_volt);
+    if (s->is_limited) {
+        solve_in_discs(normal, linear, s->target_volt);
+    } else {
+        for (k = 0; k < CONTROLS; ++k) {
+            s->target_volt[k] = free_volt[k];
+        }
+    }
+    for (i = 0; i < PAIRS; ++i) {
+        const double *to = &s->target_volt[2 * i], *from = &s->control_volt[2 * i];
+        fastest = fmax(fastest, hypot(to[0] - from[0], to[1] - from[1]));
+    }
+    share = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest, DBL_MIN));
+    for (k = 0; k < CONTROLS; ++k) {
+        s->control_volt[k] += share * (s->target_volt[k] - s->control_volt[k]);
+    }
+}
+
+/* ---- what is called --------------------------------------------------------------------------- */
+
+void {{name}}_start({{name}}_state *s)
+{
+    int i, k;
+    for (k = 0; k < CONTROLS; ++k) {
+        s->control_volt[k] = s->target_volt[k] = 0.0;
+    }
+    for (i = 0; i < LOADS; ++i) {
+        s->is_load_lost[i] = 0;
+        s->loads[i] = 0.0;
+    }
+    for (i = 0; i < FLAPS; ++i) {
+        s->is_flap_lost[i] = 0;
+    }
+    s->is_limited = 0;
+    s->settling = SETTLING;
+    s->sample = s->revolution = 0;
+    {{t_start}}
+}
+
+int {{name}}_cycle({{name}}_state *s, const double loads[LOADS], double advance_ratio)
+{
+    double t[LOADS][CONTROLS], z[LOADS];
+    int i;
+    for (i = 0; i < LOADS; ++i) {
+        if (!s->is_load_lost[i] && !isfinite(loads[i])) {
+            return {{NAME}}_BAD_INPUT;
+        }
+        z[i] = s->is_load_lost[i] ? 0.0 : loads[i];
+    }
+    if (!isfinite(advance_ratio)) {
+        return {{NAME}}_BAD_INPUT;
+    }
+    for (i = 0; i < LOADS; ++i) {
+        s->loads[i] = loads[i];
+    }
+    {{t_now}}
+    step(s, t, z);
+    return {{NAME}}_STEPPED;
+}
+
+int {{name}}_sample({{name}}_state *s, const double hub[CHANNELS], double advance_ratio)
+{
+    double loads[LOADS], *sums = s->sums[s->revolution];
+    int c, k, rev;
+    for (c = 0; c < CHANNELS; ++c) {
+        if (!isfinite(hub[c]) && !(s->is_load_lost[2 * c] && s->is_load_lost[2 * c + 1])) {
+            return {{NAME}}_BAD_INPUT;
+        }
+    }
+    if (!isfinite(advance_ratio)) {
+        return {{NAME}}_BAD_INPUT;
+    }
+    if (s->settling > 0) {
+        --s->settling;
+        return {{NAME}}_TAKEN;
+    }
+    for (c = 0; c < CHANNELS; ++c) {
+        const double value = isfinite(hub[c]) ? hub[c] / LOAD_UNIT[c] : 0.0;
+        for (k = 0; k < 2; ++k) {
+            sums[2 * c + k] = (s->sample == 0 ? 0.0 : sums[2 * c + k]) + WAVE[s->sample][k] * value;
+        }
+    }
+    if (++s->sample < SAMPLES) {
+        return {{NAME}}_TAKEN;
+    }
+    s->sample = 0;
+    if (++s->revolution < WINDOW) {
+        return {{NAME}}_TAKEN;
+    }
+    s->revolution = 0;
+    s->settling = SETTLING;
+    for (k = 0; k < LOADS; ++k) {
+        double sum = 0.0;
+        for (rev = 0; rev < WINDOW; ++rev) {
+            sum += s->sums[rev][k];
+        }
+        loads[k] = 1.0 / WINDOW * sum;
+    }
+    return {{name}}_cycle(s, loads, advance_ratio);
+}
+
+double {{name}}_volt(const {{name}}_state *s, int flap, double azimuth_rad)
+{
+    double volt = 0.0;
+    int h;
+    if (flap < 0 || flap >= FLAPS || !isfinite(azimuth_rad)) {
+        return 0.0;
+    }
+    for (h = 0; h < {{NAME}}_HARMONICS; ++h) {
+        const double *u = &s->control_volt[flap * WIDTH + 2 * h];
+        volt += u[0] * cos(HARMONIC[h] * azimuth_rad) + u[1] * sin(HARMONIC[h] * azimuth_rad);
+    }
+    return volt;
+}
+
+void {{name}}_lose_flap({{name}}_state *s, int flap)
+{
+    if (flap < 0 || flap >= FLAPS || s->is_flap_lost[flap]) {
+        return;
+    }
+    s->is_flap_lost[flap] = 1;
+    {{t_lose_flap}}
+}
+
+void {{name}}_lose_load({{name}}_state *s, int load, int is_lost)
+{
+    if (load >= 0 && load < LOADS) {
+        s->is_load_lost[load] = is_lost != 0;
+    }
+}
