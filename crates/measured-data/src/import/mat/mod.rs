@@ -13,7 +13,7 @@ mod value;
 use super::columns::{ColumnOptions, choose, name_columns};
 use super::gather::Reduction;
 use super::{ImportKind, Table};
-use crate::problem::{Fault, Place, Problem, Problems};
+use crate::problem::{Place, Problem, Problems};
 
 pub(super) use value::byte_order;
 
@@ -33,21 +33,10 @@ pub(super) fn read_mat(
         .and_then(|named| choose(named, options, kind, reduction.sampling_hz))
         .map_err(refused)?;
     let mut problems = Problems::default();
-    for taken in choice.taken() {
-        let column = &found.columns[taken.source];
-        if let Some((i, value)) = column.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            let place = Place { line: Some(i + 1), ..Place::file(file) };
-            let fault = Fault::NotFinite { value: *value };
-            problems.push(place.field(taken.channel.label()), fault);
-        }
-    }
-    if !problems.is_empty() {
-        return problems.into_result(None);
-    }
     let mut gather = choice.gather(file, reduction);
     for i in 0..found.columns.first().map_or(0, Vec::len) {
         let numbers = choice.taken().map(|taken| found.columns[taken.source][i]);
-        gather.push(choice.converted(numbers), i + 1, &mut problems);
+        gather.push_or_miss(choice.converted(numbers).collect(), i + 1, &mut problems);
     }
     let parts = gather.finish(&mut problems);
     let table = parts.map(|parts| (Table { parts, choice }, found.taken));
