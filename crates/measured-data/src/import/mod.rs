@@ -10,7 +10,10 @@ mod gather;
 mod mat;
 mod micromag;
 mod sweep;
+mod tdms;
 mod text;
+mod whole;
+mod workbook;
 
 pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
@@ -34,6 +37,8 @@ pub enum SourceKind {
     Csv,
     /// MAT file of level 5 (`save -v7`).
     Mat,
+    /// TDMS file of `LabVIEW`.
+    Tdms,
     /// First-order reversal curves of a MicroMag 2900/3900 magnetometer.
     MicromagForc,
 }
@@ -44,6 +49,7 @@ impl SourceKind {
         match self {
             Self::Csv => "text table",
             Self::Mat => "MAT file of level 5",
+            Self::Tdms => "TDMS file",
             Self::MicromagForc => "MicroMag FORC file",
         }
     }
@@ -220,7 +226,7 @@ impl SourceKind {
     /// What options may speak of.
     fn takes(self) -> &'static [Taken] {
         match self {
-            Self::Csv => &[Taken::Columns, Taken::Samples],
+            Self::Csv | Self::Tdms => &[Taken::Columns, Taken::Samples],
             Self::Mat => &[Taken::Variable, Taken::Columns, Taken::Samples],
             Self::MicromagForc => &[],
         }
@@ -257,6 +263,11 @@ impl OpenSource {
         if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(GZIP) {
             reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
             packed = ", unpacked";
+        }
+        if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(workbook::MAGIC) {
+            let sheet = workbook::read_sheet(&whole(&mut reader)?).map_err(refused)?;
+            reader = Box::new(Cursor::new(sheet.into_bytes()));
+            packed = ", the largest sheet of a workbook";
         }
         let start = read_at_most(&mut reader, START).map_err(|e| refused(e.into()))?;
         let mut reader: Box<dyn BufRead> = Box::new(Cursor::new(start.clone()).chain(reader));
@@ -334,9 +345,15 @@ fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Probl
     } else {
         let bytes = read_at_most(&mut reader, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
         refuse_large(&bytes).map_err(refused)?;
-        if kind == SourceKind::Mat {
-            let which = (&request.columns, request.variable.as_deref());
-            let (table, taken) = mat::read_mat(&bytes, &name, which, request.kind, reduction)?;
+        if matches!(kind, SourceKind::Mat | SourceKind::Tdms) {
+            let (columns, into) = (&request.columns, request.kind);
+            let (table, taken) = if kind == SourceKind::Mat {
+                let which = (columns, request.variable.as_deref());
+                mat::read_mat(&bytes, &name, which, into, reduction)?
+            } else {
+                let found = tdms::read_tdms(&bytes).map_err(refused)?;
+                found.table(&name, columns, into, reduction)?
+            };
             recognised = format!("{recognised}, {taken}");
             Imported::Record(Box::new(table))
         } else {
@@ -367,6 +384,9 @@ fn recognise(start: &[u8], path: &Path) -> Result<SourceKind, Fault> {
     let named_mat = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mat"));
     if let Some(byte_order) = mat::byte_order(start, named_mat) {
         return byte_order.map(|_| SourceKind::Mat);
+    }
+    if start.starts_with(tdms::MAGIC) {
+        return Ok(SourceKind::Tdms);
     }
     if micromag::is_micromag(start) {
         return Ok(SourceKind::MicromagForc);

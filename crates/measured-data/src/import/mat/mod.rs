@@ -10,7 +10,7 @@ mod select;
 mod tests;
 mod value;
 
-use super::columns::{ColumnOptions, choose, name_columns};
+use super::columns::ColumnOptions;
 use super::gather::Reduction;
 use super::{ImportKind, Table};
 use crate::problem::{Place, Problem, Problems};
@@ -29,16 +29,5 @@ pub(super) fn read_mat(
     let variables = value::read_variables(bytes).map_err(refused)?;
     let found = select::select(&variables, variable).map_err(refused)?;
     drop(variables);
-    let choice = name_columns(options, found.names.as_deref(), found.columns.len())
-        .and_then(|named| choose(named, options, kind, reduction.sampling_hz))
-        .map_err(refused)?;
-    let mut problems = Problems::default();
-    let mut gather = choice.gather(file, reduction);
-    for i in 0..found.columns.first().map_or(0, Vec::len) {
-        let numbers = choice.taken().map(|taken| found.columns[taken.source][i]);
-        gather.push_or_miss(choice.converted(numbers).collect(), i + 1, &mut problems);
-    }
-    let parts = gather.finish(&mut problems);
-    let table = parts.map(|parts| (Table { parts, choice }, found.taken));
-    problems.into_result(table)
+    found.table(file, options, kind, reduction)
 }

@@ -1,18 +1,8 @@
 //! Which arrays of a MAT file make up the record.
 
 use super::value::{MatValue, Variables};
+use crate::import::whole::WholeColumns;
 use crate::problem::Fault;
-
-/// The columns of a record: names where the file gives them, and the numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct MatColumns {
-    /// Names of the columns, if they are fields.
-    pub(super) names: Option<Vec<String>>,
-    /// The columns, all of one length.
-    pub(super) columns: Vec<Vec<f64>>,
-    /// What was taken, in words.
-    pub(super) taken: String,
-}
 
 /// Most numeric variables listed in a message.
 const LISTED: usize = 12;
@@ -22,7 +12,7 @@ const LISTED: usize = 12;
 ///
 /// A matrix gives its columns without names; rows stand for columns where there are more columns than
 /// rows. A structure gives its numeric vectors, named by their fields.
-pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatColumns, Fault> {
+pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<WholeColumns, Fault> {
     let refused = |path: &str, what: &str| {
         let found = listing(variables);
         Fault::Other(format!("`{path}` {what}; the file has: {found}; choose one with --variable"))
@@ -42,7 +32,7 @@ pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatCol
         MatValue::Numeric { sizes, values } => matrix(sizes, values)
             .map(|columns| {
                 let taken = format!("{name}, {} numbers", size(sizes, " x "));
-                MatColumns { names: None, columns, taken }
+                WholeColumns { names: None, columns, step_s: None, taken }
             })
             .ok_or("is no matrix of several columns"),
         MatValue::Struct(fields) => {
@@ -76,7 +66,7 @@ fn matrix(sizes: &[usize], values: &[f64]) -> Option<Vec<Vec<f64>>> {
 }
 
 /// The record of a structure: its vectors, its signals, or those of the only structure in it.
-fn structure(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
+fn structure(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
     let signals = fields.iter().find(|(field, _)| field == "signals").map(|(_, value)| value);
     let found = signals.and_then(|signals| vectors(&with_time(fields, signals), name));
     found.or_else(|| vectors(fields, name)).or_else(|| {
@@ -117,7 +107,7 @@ fn with_time(fields: &[(String, MatValue)], signals: &MatValue) -> Vec<(String, 
 }
 
 /// The numeric vectors of the commonest length among fields; scalars and others are left out.
-fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
+fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
     let vector = |(name, value): &'_ (String, MatValue)| match value {
         MatValue::Numeric { sizes, values } if sizes.iter().filter(|s| **s != 1).count() == 1 => {
             Some((name.clone(), values.clone()))
@@ -129,7 +119,7 @@ fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
     let (names, columns): (Vec<_>, Vec<_>) =
         all.into_iter().filter(|(_, v)| v.len() == longest).unzip();
     let taken = format!("{name}: {} of {longest} samples", names.join(", "));
-    (columns.len() > 1).then_some(MatColumns { names: Some(names), columns, taken })
+    (columns.len() > 1).then_some(WholeColumns { names: Some(names), columns, step_s: None, taken })
 }
 
 /// The steps of a path: a field, then perhaps an index.

@@ -5,6 +5,8 @@ use std::io::{BufRead, Cursor, Read};
 
 /// Longest line taken for text, bytes.
 const LONGEST_LINE: usize = 1 << 20;
+/// Words for no number that begin as comments do.
+const NO_NUMBER: [&[u8]; 5] = [b"#N/A", b"#NV", b"#NUM!", b"#VALUE!", b"#WERT!"];
 /// Windows-1252 from 0x80 to 0x9f; what it leaves free stays a control character.
 const WINDOWS: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',
@@ -63,6 +65,10 @@ impl<R: BufRead> Lines<R> {
         if std::mem::take(&mut self.is_first) && line.starts_with("\u{feff}".as_bytes()) {
             line.drain(..3);
         }
+        // what a spreadsheet writes for no number is no comment
+        if NO_NUMBER.iter().any(|word| line.starts_with(word)) {
+            line.insert(0, b' ');
+        }
         if let (b'\r', Some(last)) = (self.end, line.last_mut())
             && *last == b'\r'
         {
@@ -113,10 +119,6 @@ pub(in crate::import) fn foreign(start: &[u8]) -> Option<Fault> {
     let starts = |magic: &[u8]| start.starts_with(magic);
     let message = if start.is_empty() {
         "is empty: the recorder wrote nothing, or the copy failed; export or copy it again"
-    } else if starts(b"TDSm") {
-        "is a TDMS file of LabVIEW, which is not read; in DIAdem or Excel with the TDM add-in save it as CSV, or in Python: nptdms.TdmsFile(FILE).as_dataframe(time_index=True).to_csv('file.csv'), then name its columns with --columns time_s=#1,command_V=#2,displacement_um=#3"
-    } else if starts(b"PK") {
-        "is a workbook or another zip archive that is not read; save the sheet as CSV, or unpack the archive"
     } else if starts(b"\x93NUMPY") {
         "is an array of NumPy, which is not read; in Python: numpy.savetxt('file.csv', numpy.load(FILE), delimiter=','), then --columns time_s,command_V,displacement_um"
     } else if starts(b"\xd0\xcf\x11\xe0") {

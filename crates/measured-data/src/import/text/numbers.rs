@@ -1,7 +1,7 @@
 //! The number of a cell: decimal points or commas, thousands separators, missing values, times of day.
 
 /// Words that instruments and spreadsheets write where there is no number, in lower case.
-const MISSING: [&str; 28] = [
+const MISSING: [&str; 30] = [
     "nan",
     "-nan",
     "na",
@@ -30,6 +30,8 @@ const MISSING: [&str; 28] = [
     "-1.#inf",
     "-1.#ind",
     "#num!",
+    "#value!",
+    "#wert!",
 ];
 /// A number beyond this is an instrument's word for overflow, such as the 9.9e37 of SCPI.
 const LARGEST: f64 = 1e20;

@@ -93,12 +93,44 @@ fn bad_rows_are_named() {
     }
     let swapped = error("time_s,u_V,x_um\n1,0,10\n2,1,20\n1,2,40\n2,3,41\n", "");
     assert!(
-        swapped.contains("time_s: does not increase, but `u_V` increases in equal steps"),
+        swapped.contains("time_s: does not increase, but `command_V` increases in equal steps"),
         "{swapped}"
     );
     let latin = &b"time_s,u_V,x_um\n0,1,\xff\n"[..];
     let text = read_with(latin, &options(""), REDUCTION).err().unwrap().to_string();
     assert!(text.contains("r.csv:2:5: displacement_um: `\u{ff}` is not a number"), "{text}");
+}
+
+/// What could be read in two ways is read in one that is right, or not at all.
+#[test]
+fn readings_that_could_be_wrong() {
+    let numbers = |text: &str| {
+        read(text, "")
+            .map(|table| (table.choice.labels().join(" "), table.parts[0].columns.clone()))
+    };
+    let bench = "time_s command_V displacement_um";
+    // three decimals behind a comma are no thousands
+    let text =
+        "t [ms]\tu [V]\tx [um]\n0\t70,123\t123,456\n1\t71,123\t124,456\n2\t72,123\t126,456\n";
+    let (labels, columns) = numbers(text).unwrap();
+    assert_eq!((labels.as_str(), columns[0][0], columns[1][2]), (bench, 70.123, 126.456));
+    // decimal commas in quotes where commas separate
+    let text = "t [s],u [V],x [um]\n\"0,0\",\"1,5\",\"2,5\"\n\"0,1\",\"2,5\",\"3,5\"\n\"0,2\",\"3,5\",\"5,5\"\n";
+    assert_eq!(numbers(text).unwrap().1, [[1.5, 2.5, 3.5], [2.5, 3.5, 5.5]]);
+    // a missing value in front is no comment: no sample may vanish
+    let rows = "1;2\n2;3\n#N/A;3\n4;5\n5;4\n";
+    let text = format!("Sample rate: 10 Hz\nu [V];x [um]\n{rows}");
+    assert_eq!(numbers(&text).unwrap().1[0], [1.0, 2.0, 3.0, 4.0, 5.0]);
+    // a quotient is a unit, not its last letter
+    let text = "speed m/s;u [V];x [um]\n0;1;2\n1;2;3\n2;3;5\n";
+    assert!(error(text, "").contains("`speed m/s` has no known unit"), "{}", error(text, ""));
+    // several clocks, of which one is not even
+    let text = "t1 [s];u [V];t2 [s];x [um]\n0;1;0;2\n1;2;1.5;3\n2;3;3;5\n";
+    assert!(error(text, "").contains("there is no time column"), "{}", error(text, ""));
+    // a header that stands twice
+    let text =
+        "time_s,u_V,x_um\n0,1,2\n1,2,3\n2,3,5\ntime_s,u_V,x_um\n3,4,5\n4,5,6\n5,6,7\n6,7,9\n";
+    assert!(error(text, "").contains("`time_s` is not a number"), "{}", error(text, ""));
 }
 
 /// A text table that is made while it is read: `rows` rows, 1 kHz.
