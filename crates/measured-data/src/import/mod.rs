@@ -233,6 +233,8 @@ impl SourceKind {
     }
 }
 
+/// The path that stands for standard input.
+const STANDARD_INPUT: &str = "-";
 /// The first bytes of a gzip archive.
 const GZIP: &[u8] = b"\x1f\x8b";
 /// Bytes by which a source is recognised.
@@ -258,7 +260,10 @@ impl OpenSource {
             refuse_large(&bytes).map_err(refused)?;
             Ok::<_, Problem>(bytes)
         };
-        let mut reader: Box<dyn BufRead> = Box::new(open_reader(path)?);
+        let mut reader: Box<dyn BufRead> = match name.as_str() {
+            STANDARD_INPUT => Box::new(BufReader::new(std::io::stdin())),
+            _ => Box::new(open_reader(path)?),
+        };
         let mut packed = "";
         if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(GZIP) {
             reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
@@ -416,6 +421,7 @@ fn folder_kind(imported: &Imported) -> DatasetKind {
 /// The folder used if the user names none: the name of the first file without its ending.
 pub fn default_folder(file: &Path) -> PathBuf {
     let stem = file.file_stem().map(PathBuf::from).unwrap_or_default();
+    let stem = if stem.as_os_str() == STANDARD_INPUT { "record".into() } else { stem };
     let taken = Folder::Disk(PathBuf::new()).contains(&stem.display().to_string());
     // a file without an ending would be in the way of its own folder
     if taken || stem.as_os_str().is_empty() {

@@ -214,7 +214,7 @@ fn raw_data(
         .iter()
         .filter_map(|at| objects[*at].raw.map(|(kind, count, size)| (*at, kind, count, size)))
         .collect();
-    let chunk: usize = indices.iter().map(|(.., size)| size).sum();
+    let chunk = indices.iter().fold(0_usize, |sum, (.., size)| sum.saturating_add(*size));
     if chunk == 0 {
         return Ok(());
     }

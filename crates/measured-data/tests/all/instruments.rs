@@ -1,7 +1,6 @@
 //! One record as many instruments and programs write it: in unchanged, or refused with a remedy that works at once.
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures and what was written")]
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
-#![expect(clippy::print_stdout, reason = "tests print the figures they check")]
 
 use measured_data::Channel;
 use measured_data::import::{ColumnOptions, ImportRequest, MOST_SAMPLES, import};
@@ -177,7 +176,8 @@ fn any_recording_goes_in_or_says_what_helps() {
                 }
                 match imported(recording, needs, &out) {
                     Ok(()) => {
-                        flaws.extend(wrong(recording, &truth, &out).map(|w| format!("{name}: {w}")))
+                        let what = wrong(recording, &truth, &out);
+                        flaws.extend(what.map(|what| format!("{name}: {what}")));
                     }
                     Err(more) => flaws.push(format!("{name}: {needs} does not help: {more}")),
                 }

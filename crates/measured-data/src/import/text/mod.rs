@@ -111,7 +111,10 @@ impl<'a> Opened<'a> {
             return Err(message(&format!("their times differ in row {}", row + 1)));
         }
         let at = a.first().map_or(0, |line| layout::cells(line, separator).len());
-        let both: String = a.iter().zip(&b).map(|(a, b)| format!("{a}{separator}{b}\n")).collect();
+        let mut both = String::new();
+        for (a, b) in a.iter().zip(&b) {
+            both.extend([*a, &*separator.to_string(), *b, "\n"]);
+        }
         let layout = self.layout.beside(other.layout, at);
         Ok(Opened { layout, rows: Box::new(Cursor::new(both)) })
     }
@@ -119,8 +122,8 @@ impl<'a> Opened<'a> {
 
 /// The fault of a table in whose first lines no row holds two numbers.
 fn no_numbers(lines: &[&str]) -> Fault {
-    let filled = lines.iter().filter(|line| !line.trim().is_empty());
-    let last: String = filled.last().map_or("", |line| line.trim()).chars().take(60).collect();
+    let mut filled = lines.iter().filter(|line| !line.trim().is_empty());
+    let last: String = filled.next_back().map_or("", |line| line.trim()).chars().take(60).collect();
     Fault::Other(format!(
         "has 0 rows of numbers, expected at least 3 with two numbers in each (the last line read: `{last}`); write numbers alone into the cells, with the units in the header"
     ))
@@ -160,24 +163,21 @@ pub(super) fn read_csv(
     };
     let (mut last_line, mut behind) = (0, 0);
     let mut origin = choice.time.is_none().then_some(0.0);
-    table.numbers(&wanted, read, &mut problems, |numbers, line, problems| match numbers {
-        Some(numbers) => {
-            let mut row: Vec<f64> = choice.converted(numbers.iter().copied()).collect();
-            let zero = *origin.get_or_insert(if row[0] > CLOCK_S { row[0] } else { 0.0 });
-            row[0] -= zero;
-            let most = if choice.time.is_some() { f64::INFINITY } else { LARGEST };
-            row.iter_mut().enumerate().for_each(|(i, value)| {
-                if value.abs() > if i == 0 { most } else { LARGEST } {
-                    *value = f64::NAN;
-                }
-            });
-            (last_line, behind) = (line, 0);
-            gather.push_or_miss(row, line, problems);
-        }
-        None => {
+    let most_s = if choice.time.is_some() { f64::INFINITY } else { LARGEST };
+    table.numbers(&wanted, read, &mut problems, |numbers, line, problems| {
+        let Some(numbers) = numbers else {
             behind += 1;
-            gather.leave_out();
+            return gather.leave_out();
+        };
+        let mut row: Vec<f64> = choice.converted(numbers.iter().copied()).collect();
+        let zero = *origin.get_or_insert(if row[0] > CLOCK_S { row[0] } else { 0.0 });
+        row[0] -= zero;
+        for (i, value) in row.iter_mut().enumerate() {
+            let most = if i == 0 { most_s } else { LARGEST };
+            *value = if value.abs() <= most { *value } else { f64::NAN };
         }
+        (last_line, behind) = (line, 0);
+        gather.push_or_miss(row, line, problems);
     })?;
     // lines of text behind the last sample are no part of the record
     let is_behind = |problem: &Problem| {
