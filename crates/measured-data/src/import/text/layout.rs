@@ -138,7 +138,12 @@ impl Block {
         while from + 1 < run.len() && word(run[from]) && !goes_on(from) {
             from += 1;
         }
-        let start = run[from];
+        // an earlier row that is as complete begins the record, whatever stands between
+        let is_whole = |i: &&usize| {
+            let is_number = |column: &usize| kinds[**i].get(*column) == Some(&Cell::Number);
+            numeric.iter().all(is_number) && !word(**i)
+        };
+        let start = data.iter().find(is_whole).map_or(run[from], |first| run[from].min(*first));
         let end = run.last()? + 1;
         let texts = seen.iter().filter(|column| column.1).count();
         Some(Self { separator, decimal, width: seen.len(), rows, start, end, numeric, texts })

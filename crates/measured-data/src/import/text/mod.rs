@@ -184,7 +184,7 @@ pub(super) fn read_csv(
         let is_text = !matches!(problem.fault, Fault::Truncated { .. });
         is_text && problem.place.line.is_some_and(|line| line > last_line)
     };
-    let is_footer = (1..=MOST_BEHIND).contains(&behind);
+    let is_footer = last_line > 0 && (1..=MOST_BEHIND).contains(&behind);
     let footer = is_footer && problems.as_slice().iter().all(is_behind);
     if footer {
         problems = Problems::default();
