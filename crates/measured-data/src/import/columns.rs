@@ -179,7 +179,10 @@ impl Choice {
     /// An empty record of these columns.
     pub(super) fn gather(&self, file: &str, reduction: Reduction) -> Gather {
         let sampling_hz = reduction.sampling_hz.filter(|_| self.time.is_none());
-        Gather::new(file, self.labels(), Reduction { sampling_hz, ..reduction })
+        let numbered = |taken: &Taken| format!("{}=#{}", taken.channel.label(), taken.source + 1);
+        let others = self.columns.iter().map(numbered).collect::<Vec<_>>().join(",");
+        let reduction = Reduction { sampling_hz, ..reduction };
+        Gather::new(file, self.labels(), reduction).without_time(others)
     }
 }
 

@@ -47,6 +47,8 @@ pub(super) struct Gather {
     count: usize,
     time: TimeTrack,
     gaps: Gaps,
+    /// The columns besides the time as `--columns` takes them.
+    without_time: String,
     /// The records before this one in the source.
     before: Vec<Self>,
 }
@@ -67,8 +69,8 @@ struct Gaps {
 struct TimeTrack {
     /// The first different steps with their numbers: two, if a clock rounds.
     steps: Vec<(f64, usize)>,
-    /// Stamps that are repeated, which a coarse clock does.
-    repeated: (Listing, Problems),
+    /// The line of the first stamp that is repeated, which a coarse clock does.
+    repeated: Option<usize>,
     first_s: f64,
     last_s: f64,
     /// Shortest and longest step with the line behind it.
@@ -145,6 +147,7 @@ impl Gather {
             count: 0,
             time: TimeTrack::default(),
             gaps: Gaps::default(),
+            without_time: String::new(),
             before: Vec::new(),
         }
     }
@@ -157,6 +160,11 @@ impl Gather {
         if self.reduction.split && breaks {
             self.begin_anew();
         }
+    }
+
+    /// The same with the columns besides the time as `--columns` takes them.
+    pub(super) fn without_time(self, without_time: String) -> Self {
+        Self { without_time, ..self }
     }
 
     fn place(&self, line: usize) -> Place {
@@ -202,7 +210,9 @@ impl Gather {
 
     /// Ends a record and begins the next of the same source.
     fn begin_anew(&mut self) {
+        let without_time = self.without_time.clone();
         let fresh = Self::new(&self.file, self.labels.clone(), self.reduction);
+        let fresh = Self { without_time, ..fresh };
         let mut ended = std::mem::replace(self, fresh);
         self.before = std::mem::take(&mut ended.before);
         self.before.push(ended);
@@ -253,13 +263,12 @@ impl Gather {
             track.first_s = time_s;
         } else if !track.hole {
             let step = time_s - track.last_s;
-            let fault = || Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
             if step < 0.0 {
-                track.backward.push(problems, place.field(&self.labels[0]), fault());
+                let fault = Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
+                track.backward.push(problems, place.field(&self.labels[0]), fault);
                 track.faulty = true;
             } else if step <= 0.0 {
-                let (listing, problems) = &mut track.repeated;
-                listing.push(problems, place.field(&self.labels[0]), fault());
+                track.repeated.get_or_insert(line);
             }
             let is_alike = |other: f64| (step - other).abs() <= 1e-3 * step.abs().max(other.abs());
             match track.steps.iter().position(|(other, _)| is_alike(*other)) {
@@ -333,10 +342,14 @@ impl Gather {
                 .push(Problem::new(Place::file(&self.file).field(&label), Fault::Other(message)));
             Sampling { step_s, jitter: 0.0 }
         } else {
-            let (listing, mut repeated) = std::mem::take(&mut self.time.repeated);
-            listing.finish(&mut repeated);
-            self.time.faulty |= !repeated.is_empty();
-            problems.append(repeated);
+            if let Some(line) = self.time.repeated {
+                let message = format!(
+                    "stamps repeat: the clock is too coarse to tell the steps between the samples; leave it out and give the rate: --columns {} --sampling-hz HZ",
+                    self.without_time
+                );
+                problems.push(self.place(line).field(&label), Fault::Other(message));
+                self.time.faulty = true;
+            }
             Sampling { step_s, jitter: self.jitter(step_s, &label, problems) }
         };
         if !problems.is_empty() {

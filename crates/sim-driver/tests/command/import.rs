@@ -107,6 +107,30 @@ fn long_records_are_averaged_and_say_so() {
     place.hhc(&["check", "rate"]).done();
 }
 
+#[test]
+fn standard_input_quiet_completions_and_pages() {
+    let place = Place::new();
+    place.write("a.csv", &csv(ACTUATOR, &play(0.2, 400), [1.0, 8.0, 20.0]));
+    // commands below 12 V: a warning
+    let loud = place.hhc(&["import", "a.csv", "-o", "loud"]);
+    assert!(loud.err.contains("warning"), "{}", loud.err);
+    let quiet = place.hhc(&["import", "a.csv", "-o", "quiet", "--quiet"]);
+    assert!(quiet.err.is_empty() && quiet.out.contains("400 samples"), "{}", quiet.err);
+    let ran = std::process::Command::new(env!("CARGO_BIN_EXE_hhc"))
+        .args(["import", "-", "-o", "piped"])
+        .current_dir(place.path())
+        .stdin(std::fs::File::open(place.path().join("a.csv")).unwrap())
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert_eq!(place.read("piped/run.csv"), place.read("loud/a.csv"));
+    let text = place.hhc(&["completions", "bash"]).done();
+    assert!(text.contains("_hhc()") && text.contains("--sampling-hz"), "{text}");
+    let page = place.hhc(&["man", "import"]).done();
+    assert!(page.contains(".TH") && page.contains("deg\\-per\\-um"), "{page}");
+    place.hhc(&["man", "imports"]).rejected(&["there is no command `imports`", "hhc help"]);
+}
+
 const FORC: &str = "MicroMag 2900/3900 Data File (Series 0015)\nUnits of measure: cgs\n\"wires\"\nHCal = 1000\nNCrv = 3\nNData = 12\n\n";
 
 #[test]

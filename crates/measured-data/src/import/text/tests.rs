@@ -127,6 +127,13 @@ fn readings_that_could_be_wrong() {
     // several clocks, of which one is not even
     let text = "t1 [s];u [V];t2 [s];x [um]\n0;1;0;2\n1;2;1.5;3\n2;3;3;5\n";
     assert!(error(text, "").contains("there is no time column"), "{}", error(text, ""));
+    // a clock of seconds under a faster recorder
+    let text = "Time;u [V];x [um]\n10:00:00;1;2\n10:00:00;2;3\n10:00:00;3;5\n10:00:00;4;6\n";
+    let said = error(text, "");
+    let (remedy, reduction) = ("command_V=#2,displacement_um=#3", Some(50.0));
+    assert!(said.contains(&format!("--columns {remedy} --sampling-hz HZ")), "{said}");
+    let reduction = Reduction { sampling_hz: reduction, ..REDUCTION };
+    assert!(read_with(Cursor::new(text), &options(remedy), reduction).is_ok());
     // a header that stands twice
     let text =
         "time_s,u_V,x_um\n0,1,2\n1,2,3\n2,3,5\ntime_s,u_V,x_um\n3,4,5\n4,5,6\n5,6,7\n6,7,9\n";
