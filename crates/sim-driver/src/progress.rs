@@ -1,7 +1,21 @@
 //! Progress bars on the terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
+
+/// Whether warnings and progress are kept to itself.
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Keeps warnings and progress off standard error from now on, or no longer.
+pub fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether warnings and progress are kept off standard error.
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
 
 /// Shows how far a run has come; hidden where standard error is no terminal.
 #[derive(Debug, Clone)]
@@ -12,6 +26,9 @@ pub struct Progress {
 impl Progress {
     /// A bar of `steps` steps.
     pub fn new(steps: usize) -> Self {
+        if is_quiet() {
+            return Self::hidden();
+        }
         let bar = ProgressBar::with_draw_target(Some(steps as u64), ProgressDrawTarget::stderr());
         // one step has no share and no end that could be told
         let template = if steps > 1 {

@@ -129,8 +129,14 @@ pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskErr
     }
     let record = bytes_of(&fixtures.join("bench/apa500l_synthetic").join(RECORD))?;
     let mat = bytes_of(&fixtures.join("mat/bench_struct.mat"))?;
+    let tdms = bytes_of(&fixtures.join("instruments/labview_tdms.tdms"))?;
+    let workbook = bytes_of(&fixtures.join("instruments/excel_xlsx.xlsx"))?;
+    let oscilloscope = bytes_of(&fixtures.join("instruments/tek_mso5.csv"))?;
     for (reader, source, valid) in [
         ("import CSV", SourceKind::Csv, record),
+        ("import preamble", SourceKind::Csv, oscilloscope),
+        ("import workbook", SourceKind::Csv, workbook),
+        ("import TDMS", SourceKind::Tdms, tdms),
         ("import MAT", SourceKind::Mat, mat),
         ("import FORC", SourceKind::MicromagForc, FORC.into()),
     ] {

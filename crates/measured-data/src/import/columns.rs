@@ -3,7 +3,7 @@
 use super::ImportKind;
 use super::gather::{Gather, Reduction};
 use crate::problem::Fault;
-use crate::tables::{Channel, Dimension, QUANTITIES, Unit, input_and_output, unknown_unit};
+use crate::tables::{Channel, Dimension, QUANTITIES, UNITS, Unit, input_and_output, unknown_unit};
 
 /// A column that is taken.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +41,24 @@ pub struct ColumnOptions {
 /// they have no known unit.
 type Named = (Vec<(usize, Channel)>, Vec<String>);
 
+/// The columns of a bench.
+const USUAL: [&str; 3] = ["time_s", "command_V", "displacement_um"];
+
+/// The fault of columns without units, with what to write for the first ones.
+fn unitless(named: &[(usize, Channel)], left_out: &[String]) -> Fault {
+    let first = left_out.first().map_or("", String::as_str);
+    let taken = USUAL.into_iter().filter(|own| named.iter().all(|(_, c)| c.label() != *own));
+    let plain = |name: &&String| !name.is_empty() && !name.contains([',', '=', '[', '"']);
+    let sources = left_out.iter().filter(plain);
+    let kept = named.iter().map(|(i, c)| format!("{}=#{}", c.label(), i + 1));
+    let said = taken.zip(sources).map(|(own, source)| format!("{own}={source}"));
+    let example = kept.chain(said).take(3).collect::<Vec<_>>().join(",");
+    Fault::Other(format!(
+        "the column `{first}` has no known unit; say which column is which, in its unit: --columns '{example}'; units are {}",
+        UNITS.map(|unit| unit.symbol).join(", ")
+    ))
+}
+
 /// Names the columns of a source of `count` columns with the names it gives itself, if any.
 pub(super) fn name_columns(
     options: &ColumnOptions,
@@ -49,8 +67,10 @@ pub(super) fn name_columns(
 ) -> Result<Named, Fault> {
     let Some(text) = &options.columns else {
         let Some(own) = own else {
+            let usual = (0..count).map(|i| USUAL.get(i).copied().unwrap_or("-"));
+            let example = usual.collect::<Vec<_>>().join(",");
             return Err(Fault::Other(format!(
-                "the {count} columns have no names; name them: --columns time_s,... with units, - for a column to leave out"
+                "the {count} columns have no names; name them: --columns {example} with their units, - for a column to leave out"
             )));
         };
         let (mut columns, mut left_out) = Named::default();
@@ -67,7 +87,13 @@ pub(super) fn name_columns(
         if let Some(number) = source.strip_prefix('#') {
             return number.parse::<usize>().ok()?.checked_sub(1).filter(|i| *i < count);
         }
-        own?.iter().position(|name| name == source || Channel::plain_name(name) == source)
+        // as it stands in the source, or without the unit that was found elsewhere
+        let bare =
+            |name: &str| name.rsplit_once(" [").map_or(name.to_owned(), |(bare, _)| bare.into());
+        let is = |name: &String| {
+            name == source || bare(name) == source || Channel::plain_name(name) == source
+        };
+        own?.iter().position(is)
     };
     let by_name = entries.iter().any(|e| e.contains('='))
         || (own.is_some() && entries.iter().all(|e| *e == "-" || find(e).is_some()));
@@ -153,7 +179,10 @@ impl Choice {
     /// An empty record of these columns.
     pub(super) fn gather(&self, file: &str, reduction: Reduction) -> Gather {
         let sampling_hz = reduction.sampling_hz.filter(|_| self.time.is_none());
-        Gather::new(file, self.labels(), Reduction { sampling_hz, ..reduction })
+        let numbered = |taken: &Taken| format!("{}=#{}", taken.channel.label(), taken.source + 1);
+        let others = self.columns.iter().map(numbered).collect::<Vec<_>>().join(",");
+        let reduction = Reduction { sampling_hz, ..reduction };
+        Gather::new(file, self.labels(), reduction).without_time(others)
     }
 }
 
@@ -164,7 +193,19 @@ pub(super) fn choose(
     wanted: Option<ImportKind>,
     sampling_hz: Option<f64>,
 ) -> Result<Choice, Fault> {
-    let (times, data): (Vec<_>, Vec<_>) = columns.into_iter().partition(|(_, c)| c.is_time());
+    let (mut times, mut data): (Vec<_>, Vec<_>) =
+        columns.into_iter().partition(|(_, c)| c.is_time());
+    if times.is_empty() {
+        let is_one = |(_, c): &(usize, Channel)| c.unit.dimension == Dimension::Time;
+        if let [at] = (0..data.len()).filter(|i| is_one(&data[*i])).collect::<Vec<_>>()[..] {
+            times.push(data.remove(at));
+        }
+    }
+    // columns without units are the likelier flaw than no time
+    if (times.is_empty() && sampling_hz.is_none() || data.len() < 2) && !left_out.is_empty() {
+        let named: Vec<_> = times.into_iter().chain(data).collect();
+        return Err(unitless(&named, &left_out));
+    }
     let time = match times.first() {
         Some((source, channel)) => {
             let time = converted(*source, channel, "s")?;
@@ -172,14 +213,15 @@ pub(super) fn choose(
         }
         None if sampling_hz.is_some() => None,
         None => {
-            // a time without unit is the likelier flaw than no time
-            let unitless =
-                |name: &&String| Channel::plain_name(name) == "time" || name.trim() == "t";
             let message = "there is no time column; name one `time_s`, or give --sampling-hz";
-            let no_time = || Fault::Other(message.to_owned());
-            return Err(left_out.iter().find(unitless).map_or_else(no_time, |n| unknown_unit(n)));
+            return Err(Fault::Other(message.to_owned()));
         }
     };
+    let said = [&options.columns, &options.convert, &options.input, &options.response];
+    let is_own = said.into_iter().all(Option::is_none);
+    if is_own && wanted.is_none_or(|kind| kind == ImportKind::ActuatorBench) {
+        name_bench(&mut data);
+    }
     let has = |name: &str, dimension: Dimension| {
         data.iter().any(|(_, c)| c.name == name && c.unit.dimension == dimension)
     };
@@ -237,6 +279,22 @@ pub(super) fn choose(
         }
     }
     Ok(choice)
+}
+
+/// Calls the only voltage the command and the only length the displacement, where no column has these names.
+fn name_bench(data: &mut [(usize, Channel)]) {
+    let bench = [("command", Dimension::Voltage), ("displacement", Dimension::Length)];
+    let only = bench.map(|(name, dimension)| {
+        let is = |i: &usize| data[*i].1.unit.dimension == dimension;
+        let all: Vec<usize> = (0..data.len()).filter(is).collect();
+        let named = all.iter().copied().find(|i| data[*i].1.name == name);
+        named.or(if let [one] = all[..] { Some(one) } else { None })
+    });
+    if let [Some(command), Some(displacement)] = only {
+        for (at, (name, _)) in [command, displacement].into_iter().zip(bench) {
+            name.clone_into(&mut data[at].1.name);
+        }
+    }
 }
 
 fn names(data: &[(usize, Channel)]) -> String {

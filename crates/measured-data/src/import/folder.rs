@@ -257,7 +257,8 @@ impl Parts {
             .chars()
             .map(|c| if c.is_alphanumeric() || matches!(c, '.' | '-' | '_') { c } else { '_' })
             .collect();
-        let plain = if plain.trim_matches('.').is_empty() { "run".to_owned() } else { plain };
+        let plain =
+            if plain.trim_matches(['.', '-']).is_empty() { "run".to_owned() } else { plain };
         let taken = |id: &str| self.entries.iter().any(|e| e.id == id);
         let numbered = (2..).map(|n| format!("{plain}_{n}"));
         let mut ids = std::iter::once(plain.clone()).chain(numbered);

@@ -4,7 +4,7 @@
 use super::whole;
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::tables::{LEAST_ROWS, Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling};
-use crate::tables::{note_swapped, resample, resampled, too_few_rows};
+use crate::tables::{note_swapped, resample, resampled, significant, too_few_rows};
 
 /// How much of a record is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +24,10 @@ pub(super) struct Reduction {
 const GAP: f64 = 10.0;
 /// Fewest samples of a part of a source.
 const LEAST_PART: usize = 16;
+/// Most samples without a number in a row that are filled by a straight line.
+const MOST_FILLED: usize = 10;
+/// Least part of the steps of the time that a rounded clock makes shorter or longer than the others.
+const LEAST_ROUNDED: f64 = 0.02;
 
 /// Samples while they come in.
 ///
@@ -42,13 +46,31 @@ pub(super) struct Gather {
     block_line: usize,
     count: usize,
     time: TimeTrack,
+    gaps: Gaps,
+    /// The columns besides the time as `--columns` takes them.
+    without_time: String,
     /// The records before this one in the source.
     before: Vec<Self>,
+}
+
+/// Samples without a number.
+#[derive(Default)]
+struct Gaps {
+    /// Those since the last sample.
+    open: usize,
+    /// The last sample, the time of the source first.
+    last: Vec<f64>,
+    filled: usize,
+    left_out: usize,
 }
 
 /// Steps of the time as it comes in.
 #[derive(Default)]
 struct TimeTrack {
+    /// The first different steps with their numbers: two, if a clock rounds.
+    steps: Vec<(f64, usize)>,
+    /// The line of the first stamp that is repeated, which a coarse clock does.
+    repeated: Option<usize>,
     first_s: f64,
     last_s: f64,
     /// Shortest and longest step with the line behind it.
@@ -61,6 +83,32 @@ struct TimeTrack {
     hole: bool,
     /// Whether one ever was.
     holes: bool,
+}
+
+/// Even times.
+#[derive(Clone, Copy)]
+struct Even {
+    /// Time of the first block, s.
+    first_s: f64,
+    /// Step of the source, s.
+    step_s: f64,
+}
+
+impl Even {
+    /// The straight line of least squares through the times of blocks.
+    fn through(times: &[f64], block: usize) -> Self {
+        let n = times.len() as f64;
+        let middle = 0.5 * (n - 1.0);
+        let mean = times.iter().sum::<f64>() / n;
+        let from_middle = |i: usize| i as f64 - middle;
+        let (mut above, mut below) = (0.0, 0.0);
+        for (i, time) in times.iter().enumerate() {
+            above += from_middle(i) * (time - mean);
+            below += from_middle(i) * from_middle(i);
+        }
+        let slope = above / below;
+        Self { first_s: mean - slope * middle, step_s: slope / block as f64 }
+    }
 }
 
 /// A record that has come in whole.
@@ -98,6 +146,8 @@ impl Gather {
             block_line: 0,
             count: 0,
             time: TimeTrack::default(),
+            gaps: Gaps::default(),
+            without_time: String::new(),
             before: Vec::new(),
         }
     }
@@ -106,13 +156,15 @@ impl Gather {
     fn part(&mut self, time_s: f64) {
         let step = time_s - self.time.last_s;
         let usual = (self.time.last_s - self.time.first_s) / (self.count.max(2) - 1) as f64;
-        let breaks = self.count > 0 && (step <= 0.0 || self.count > 1 && step > GAP * usual);
+        let breaks = self.count > 0 && (step < 0.0 || self.count > 1 && step > GAP * usual);
         if self.reduction.split && breaks {
-            let fresh = Self::new(&self.file, self.labels.clone(), self.reduction);
-            let mut ended = std::mem::replace(self, fresh);
-            self.before = std::mem::take(&mut ended.before);
-            self.before.push(ended);
+            self.begin_anew();
         }
+    }
+
+    /// The same with the columns besides the time as `--columns` takes them.
+    pub(super) fn without_time(self, without_time: String) -> Self {
+        Self { without_time, ..self }
     }
 
     fn place(&self, line: usize) -> Place {
@@ -122,6 +174,48 @@ impl Gather {
     /// Tells of a row that cannot be read: the time steps across it say nothing.
     pub(super) fn leave_out(&mut self) {
         (self.time.hole, self.time.holes) = (true, true);
+    }
+
+    /// Takes a sample up that may lack numbers. Up to [`MOST_FILLED`] such samples between two others are filled by straight
+    /// lines; more are a gap, where the record is parted or refused.
+    pub(super) fn push_or_miss(&mut self, row: Vec<f64>, line: usize, problems: &mut Problems) {
+        if row.iter().any(|value| !value.is_finite()) {
+            self.gaps.open += 1;
+            return;
+        }
+        let open = std::mem::take(&mut self.gaps.open);
+        let last = std::mem::take(&mut self.gaps.last);
+        if last.is_empty() {
+            self.gaps.left_out += open;
+        } else if open > MOST_FILLED && self.reduction.split {
+            self.gaps.left_out += open;
+            self.begin_anew();
+        } else if open > MOST_FILLED {
+            let message = format!(
+                "{open} samples before this line have no number, more than the {MOST_FILLED} that are filled; import with --split, which parts the record there"
+            );
+            problems.push(self.place(line), Fault::Other(message));
+            self.leave_out();
+        } else {
+            for k in 1..=open {
+                let part = k as f64 / (open + 1) as f64;
+                let between = last.iter().zip(&row).map(|(a, b)| a + part * (b - a));
+                self.push(between, line, problems);
+            }
+            self.gaps.filled += open;
+        }
+        self.push(row.iter().copied(), line, problems);
+        self.gaps.last = row;
+    }
+
+    /// Ends a record and begins the next of the same source.
+    fn begin_anew(&mut self) {
+        let without_time = self.without_time.clone();
+        let fresh = Self::new(&self.file, self.labels.clone(), self.reduction);
+        let fresh = Self { without_time, ..fresh };
+        let mut ended = std::mem::replace(self, fresh);
+        self.before = std::mem::take(&mut ended.before);
+        self.before.push(ended);
     }
 
     /// Takes one sample up: the time, s, if the source has one, and the other columns. `line` is 0
@@ -169,10 +263,18 @@ impl Gather {
             track.first_s = time_s;
         } else if !track.hole {
             let step = time_s - track.last_s;
-            if step <= 0.0 {
+            if step < 0.0 {
                 let fault = Fault::TimeNotIncreasing { time_s, before_s: track.last_s };
                 track.backward.push(problems, place.field(&self.labels[0]), fault);
                 track.faulty = true;
+            } else if step <= 0.0 {
+                track.repeated.get_or_insert(line);
+            }
+            let is_alike = |other: f64| (step - other).abs() <= 1e-3 * step.abs().max(other.abs());
+            match track.steps.iter().position(|(other, _)| is_alike(*other)) {
+                Some(known) => track.steps[known].1 += 1,
+                None if track.steps.len() < 3 => track.steps.push((step, 1)),
+                None => {}
             }
             if track.shortest.is_none_or(|(s, _)| step < s) {
                 track.shortest = Some((step, line));
@@ -227,8 +329,29 @@ impl Gather {
             return None;
         }
         let step_s = (self.time.last_s - self.time.first_s) / (self.count - 1) as f64;
-        let jitter = self.jitter(step_s, &label, problems);
-        let sampling = Sampling { step_s, jitter };
+        let rounded = self.rounded();
+        let mut warnings = self.told();
+        let sampling = if let Some((even, grain_s)) = &rounded {
+            let step_s = even.step_s;
+            let message = format!(
+                "the time stamps differ by {} s, the steps of their clock; equal steps of {} s are taken",
+                significant(*grain_s, 6),
+                significant(step_s, 6)
+            );
+            warnings
+                .push(Problem::new(Place::file(&self.file).field(&label), Fault::Other(message)));
+            Sampling { step_s, jitter: 0.0 }
+        } else {
+            if let Some(line) = self.time.repeated {
+                let message = format!(
+                    "stamps repeat: the clock is too coarse to tell the steps between the samples; leave it out and give the rate: --columns {} --sampling-hz HZ",
+                    self.without_time
+                );
+                problems.push(self.place(line).field(&label), Fault::Other(message));
+                self.time.faulty = true;
+            }
+            Sampling { step_s, jitter: self.jitter(step_s, &label, problems) }
+        };
         if !problems.is_empty() {
             if self.time.faulty {
                 let others = self.labels.iter().map(String::as_str).zip(&self.columns).skip(1);
@@ -244,7 +367,6 @@ impl Gather {
                 self.average(factor);
             }
         }
-        let mut warnings = Vec::new();
         let left_out = self.count - self.block * self.columns[0].len();
         if left_out > 0 {
             let message = format!(
@@ -263,6 +385,11 @@ impl Gather {
             resample(&mut time_s, &mut columns.iter_mut().collect::<Vec<_>>());
             warnings.push(resampled(&self.file, &label, sampling));
         }
+        if let Some((even, _)) = rounded {
+            for (i, time) in time_s.iter_mut().enumerate() {
+                *time = even.first_s + even.step_s * self.block as f64 * i as f64;
+            }
+        }
         // the digits of the source's times differ by rounding: equal steps are written
         let (first, last) = (time_s[0], time_s[time_s.len() - 1]);
         let even = (last - first) / (time_s.len() - 1) as f64;
@@ -271,6 +398,42 @@ impl Gather {
         }
         let (lines, count, block) = (self.lines, self.count, self.block);
         Some(Gathered { time_s, columns, lines, count, block, sampling, warnings })
+    }
+
+    /// What was filled and left out.
+    fn told(&self) -> Vec<Problem> {
+        let Gaps { open, filled, left_out, .. } = self.gaps;
+        let told = [
+            (filled, "samples without a number are filled by straight lines"),
+            (left_out + open, "samples without a number at an end are left out"),
+        ];
+        let told = told.into_iter().filter(|(count, _)| *count > 0);
+        let warning = |(count, words)| {
+            Problem::new(Place::file(&self.file), Fault::Other(format!("{count} {words}")))
+        };
+        told.map(warning).collect()
+    }
+
+    /// The even times behind stamps that a clock rounded, and the step of the clock, s.
+    ///
+    /// Equal steps that are rounded to a clock are two whole multiples of its step, one more than the other; none but a
+    /// clock does that. The step is that of the straight line of least squares through the stamps.
+    fn rounded(&self) -> Option<(Even, f64)> {
+        let &[a, b] = &self.time.steps[..] else { return None };
+        let (short, long) = if a.0 < b.0 { (a, b) } else { (b, a) };
+        let grain_s = long.0 - short.0;
+        let multiple = short.0 / grain_s;
+        let rarer = short.1.min(long.1) as f64;
+        let is_clock = short.0 >= 0.0
+            && (multiple - multiple.round()).abs() < 0.01
+            && rarer >= LEAST_ROUNDED * (short.1 + long.1) as f64;
+        let even = Even::through(&self.columns[0], self.block);
+        let is_near = |(i, time): (usize, &f64)| {
+            let line = even.first_s + even.step_s * self.block as f64 * i as f64;
+            (time - line).abs() <= 1.01 * grain_s
+        };
+        let fits = is_clock && self.columns[0].iter().enumerate().all(is_near);
+        fits.then_some((even, grain_s))
     }
 
     /// Largest deviation of a step from the usual one; a problem if it is no jitter.
@@ -291,6 +454,7 @@ impl Gather {
         // steps that go back are reported already
         if deviation(worst) > RESAMPLED_JITTER && shortest.0 > 0.0 {
             let place = self.place(line).field(label);
+            let [step_s, usual_s] = [step_s, usual_s].map(|step| significant(step, 6));
             problems.push(place, Fault::TimeStepUneven { step_s, usual_s });
             self.time.faulty = true;
         }

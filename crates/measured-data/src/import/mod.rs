@@ -5,12 +5,15 @@
 //! CSV table per run: the whole folder or nothing.
 
 mod columns;
-mod csv_source;
 mod folder;
 mod gather;
 mod mat;
 mod micromag;
 mod sweep;
+mod tdms;
+mod text;
+mod whole;
+mod workbook;
 
 pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
@@ -21,9 +24,10 @@ use crate::error::DataError;
 use crate::files::{Folder, Source, open_reader};
 use crate::problem::{Fault, Place, Problem, Problems};
 use columns::{Choice, no_effect};
+use flate2::read::MultiGzDecoder;
 use gather::{Gathered, Reduction};
 use serde::{Deserialize, Serialize};
-use std::io::{Cursor, Read};
+use std::io::{BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 
 /// The formats data are imported from.
@@ -34,6 +38,8 @@ pub enum SourceKind {
     Csv,
     /// MAT file of level 5 (`save -v7`).
     Mat,
+    /// TDMS file of `LabVIEW`.
+    Tdms,
     /// First-order reversal curves of a MicroMag 2900/3900 magnetometer.
     MicromagForc,
 }
@@ -44,6 +50,7 @@ impl SourceKind {
         match self {
             Self::Csv => "text table",
             Self::Mat => "MAT file of level 5",
+            Self::Tdms => "TDMS file",
             Self::MicromagForc => "MicroMag FORC file",
         }
     }
@@ -138,6 +145,11 @@ pub fn import(request: &ImportRequest) -> Result<ImportResult, DataError> {
     }
     let mut problems = Problems::default();
     let mut sources = Vec::new();
+    if let [a, b] = &request.files[..]
+        && let Some(source) = read_joined([a, b], request)?
+    {
+        return folder::write(request, vec![source]);
+    }
     for path in &request.files {
         match read_source(path, request) {
             Ok(source) => sources.push(source),
@@ -215,54 +227,139 @@ impl SourceKind {
     /// What options may speak of.
     fn takes(self) -> &'static [Taken] {
         match self {
-            Self::Csv => &[Taken::Columns, Taken::Samples],
+            Self::Csv | Self::Tdms => &[Taken::Columns, Taken::Samples],
             Self::Mat => &[Taken::Variable, Taken::Columns, Taken::Samples],
             Self::MicromagForc => &[],
         }
     }
 }
 
+/// The path that stands for standard input.
+const STANDARD_INPUT: &str = "-";
+/// The first bytes of a gzip archive.
+const GZIP: &[u8] = b"\x1f\x8b";
 /// Bytes by which a source is recognised.
 const START: u64 = 1024;
 /// Most bytes of a source that is read whole.
 const LARGEST_WHOLE: u64 = 1 << 30;
 
-fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Problems> {
-    let name = path.display().to_string();
-    let refused = |fault| Problem::new(Place::file(&name), fault);
-    let mut reader = open_reader(path)?;
-    let start = read_at_most(&mut reader, START).map_err(|e| refused(e.into()))?;
-    let recognised = recognise(&start, path).transpose().map_err(refused)?;
-    let Some(kind) = request.source.or(recognised) else {
-        let message =
-            "is not recognised as CSV, MAT v5 or a MicroMag FORC file; say what it is with --as";
-        return Err(refused(Fault::Other(message.to_owned())).into());
+/// A source that was opened: unpacked, as UTF-8 where it is text.
+struct OpenSource {
+    name: String,
+    kind: SourceKind,
+    reader: Box<dyn BufRead>,
+    /// What was unpacked, in words.
+    packed: &'static str,
+}
+
+impl OpenSource {
+    fn open(path: &Path, request: &ImportRequest) -> Result<Self, Problem> {
+        let name = path.display().to_string();
+        let refused = |fault| Problem::new(Place::file(&name), fault);
+        let whole = |reader: &mut dyn BufRead| {
+            let bytes = read_at_most(reader, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
+            refuse_large(&bytes).map_err(refused)?;
+            Ok::<_, Problem>(bytes)
+        };
+        let mut reader: Box<dyn BufRead> = match name.as_str() {
+            STANDARD_INPUT => Box::new(BufReader::new(std::io::stdin())),
+            _ => Box::new(open_reader(path)?),
+        };
+        let mut packed = "";
+        if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(GZIP) {
+            reader = Box::new(BufReader::new(MultiGzDecoder::new(reader)));
+            packed = ", unpacked";
+        }
+        if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(workbook::MAGIC) {
+            let sheet = workbook::read_sheet(&whole(&mut reader)?).map_err(refused)?;
+            reader = Box::new(Cursor::new(sheet.into_bytes()));
+            packed = ", the largest sheet of a workbook";
+        }
+        let start = read_at_most(&mut reader, START).map_err(|e| refused(e.into()))?;
+        let mut reader: Box<dyn BufRead> = Box::new(Cursor::new(start.clone()).chain(reader));
+        let mut head = start;
+        if let Some(is_little) = text::utf16(&head) {
+            let text = text::from_utf16(&whole(&mut reader)?, is_little).into_bytes();
+            head = text.iter().copied().take(1024).collect();
+            reader = Box::new(Cursor::new(text));
+        }
+        let kind = match request.source {
+            Some(kind) => kind,
+            None => recognise(&head, path).map_err(refused)?,
+        };
+        Ok(Self { name, kind, reader, packed })
+    }
+}
+
+/// Two text tables of a time and one channel each as one record; none of other files.
+fn read_joined(
+    paths: [&PathBuf; 2],
+    request: &ImportRequest,
+) -> Result<Option<ReadSource>, Problems> {
+    let open = |path: &PathBuf| {
+        let source = OpenSource::open(path, request).ok()?;
+        let is_text = source.kind == SourceKind::Csv;
+        let opened = is_text.then(|| text::Opened::open(source.reader, &source.name).ok())??;
+        opened.is_single().then_some((opened, source.name))
     };
+    let Some(((a, name), (b, _))) = open(paths[0]).zip(open(paths[1])) else { return Ok(None) };
+    let both = a.beside(b, &name)?;
+    let (columns, kind) = (&request.columns, request.kind);
+    let table = text::read_csv(both, &name, columns, kind, request.reduction())?;
+    Ok(Some(ReadSource {
+        path: paths[0].clone(),
+        kind: SourceKind::Csv,
+        recognised: format!("text table, joined with that of {}", paths[1].display()),
+        imported: Imported::Record(Box::new(table)),
+    }))
+}
+
+impl ImportRequest {
+    fn reduction(&self) -> Reduction {
+        Reduction {
+            // halving needs an even number
+            most_samples: self.most_samples & !1,
+            reduce_to_hz: self.reduce_to_hz,
+            sampling_hz: self.sampling_hz,
+            split: self.split,
+        }
+    }
+}
+
+fn refuse_large(bytes: &[u8]) -> Result<(), Fault> {
+    if bytes.len() as u64 <= LARGEST_WHOLE {
+        return Ok(());
+    }
+    let [megabytes, limit_megabytes] =
+        [bytes.len() as u64, LARGEST_WHOLE].map(|bytes| bytes / 1_000_000);
+    Err(Fault::TooLarge { megabytes, limit_megabytes })
+}
+
+fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Problems> {
+    let OpenSource { name, kind, mut reader, packed } = OpenSource::open(path, request)?;
+    let refused = |fault| Problem::new(Place::file(&name), fault);
     let words = format!("this is a {}", kind.words());
     refuse_without_effect(request, kind.takes(), &words).map_err(refused)?;
-    let reduction = Reduction {
-        // halving needs an even number
-        most_samples: request.most_samples & !1,
-        reduce_to_hz: request.reduce_to_hz,
-        sampling_hz: request.sampling_hz,
-        split: request.split,
-    };
-    let mut recognised = kind.words().to_owned();
-    let mut whole = Cursor::new(start).chain(reader);
+    let reduction = request.reduction();
+    let mut recognised = format!("{}{packed}", kind.words());
     let imported = if kind == SourceKind::Csv {
         let (columns, kind) = (&request.columns, request.kind);
-        let table = csv_source::read_csv(whole, &name, columns, kind, reduction)?;
+        let opened = text::Opened::open(reader, &name)?;
+        recognised = format!("{recognised}, {}", opened.words());
+        let table = text::read_csv(opened, &name, columns, kind, reduction)?;
         Imported::Record(Box::new(table))
     } else {
-        let bytes = read_at_most(&mut whole, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
-        if bytes.len() as u64 > LARGEST_WHOLE {
-            let [megabytes, limit_megabytes] =
-                [bytes.len() as u64, LARGEST_WHOLE].map(|bytes| bytes / 1_000_000);
-            return Err(refused(Fault::TooLarge { megabytes, limit_megabytes }).into());
-        }
-        if kind == SourceKind::Mat {
-            let which = (&request.columns, request.variable.as_deref());
-            let (table, taken) = mat::read_mat(&bytes, &name, which, request.kind, reduction)?;
+        let bytes = read_at_most(&mut reader, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
+        refuse_large(&bytes).map_err(refused)?;
+        if matches!(kind, SourceKind::Mat | SourceKind::Tdms) {
+            let (columns, into) = (&request.columns, request.kind);
+            let (table, taken) = if kind == SourceKind::Mat {
+                let which = (columns, request.variable.as_deref());
+                mat::read_mat(&bytes, &name, which, into, reduction)?
+            } else {
+                let found = tdms::read_tdms(&bytes).map_err(refused)?;
+                found.table(&name, columns, into, reduction)?
+            };
             recognised = format!("{recognised}, {taken}");
             Imported::Record(Box::new(table))
         } else {
@@ -274,7 +371,7 @@ fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Probl
     Ok(ReadSource { path: path.to_path_buf(), kind, recognised, imported })
 }
 
-fn read_at_most(reader: &mut impl Read, most: u64) -> std::io::Result<Vec<u8>> {
+fn read_at_most(reader: &mut (impl Read + ?Sized), most: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     reader.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
@@ -285,20 +382,29 @@ fn whole(value: f64) -> usize {
     format!("{value:.0}").parse().unwrap_or(usize::MAX)
 }
 
-/// The format by the first bytes; an error for formats that are known but not read.
-fn recognise(start: &[u8], path: &Path) -> Option<Result<SourceKind, Fault>> {
+/// The format by the first bytes.
+///
+/// # Errors
+/// What to do with a format that is not read.
+fn recognise(start: &[u8], path: &Path) -> Result<SourceKind, Fault> {
     let named_mat = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("mat"));
     if let Some(byte_order) = mat::byte_order(start, named_mat) {
-        return Some(byte_order.map(|_| SourceKind::Mat));
+        return byte_order.map(|_| SourceKind::Mat);
+    }
+    if start.starts_with(tdms::MAGIC) {
+        return Ok(SourceKind::Tdms);
     }
     if micromag::is_micromag(start) {
-        return Some(Ok(SourceKind::MicromagForc));
+        return Ok(SourceKind::MicromagForc);
     }
-    // text: no control characters but blanks, and no other known notation
-    let text = start.iter().all(|b| *b >= 0x20 || matches!(b, b'\t' | b'\n' | b'\r' | 0x0c));
-    let notation = start.iter().find(|b| !b.is_ascii_whitespace());
-    let other = matches!(notation, Some(b'{' | b'[' | b'<') | None);
-    (text && !other && !named_mat).then_some(Ok(SourceKind::Csv))
+    if let Some(fault) = text::foreign(start) {
+        return Err(fault);
+    }
+    if text::is_text(start) && !named_mat {
+        return Ok(SourceKind::Csv);
+    }
+    let message = "is not recognised as CSV, MAT v5 or a MicroMag FORC file; export the record as CSV, or say what it is with --as";
+    Err(Fault::Other(message.to_owned()))
 }
 
 /// The kind of folder a source goes into.
@@ -316,6 +422,7 @@ fn folder_kind(imported: &Imported) -> DatasetKind {
 /// The folder used if the user names none: the name of the first file without its ending.
 pub fn default_folder(file: &Path) -> PathBuf {
     let stem = file.file_stem().map(PathBuf::from).unwrap_or_default();
+    let stem = if stem.as_os_str() == STANDARD_INPUT { "record".into() } else { stem };
     let taken = Folder::Disk(PathBuf::new()).contains(&stem.display().to_string());
     // a file without an ending would be in the way of its own folder
     if taken || stem.as_os_str().is_empty() {

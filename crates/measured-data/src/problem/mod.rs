@@ -214,7 +214,7 @@ pub enum Fault {
     },
     /// Time does not increase.
     #[error(
-        "time {time_s} s follows {before_s} s, expected increasing time; sort the rows or split the record"
+        "time {time_s} s follows {before_s} s, expected increasing time; sort the rows, or import with --split, which parts the record there"
     )]
     TimeNotIncreasing {
         /// Time, s.
@@ -224,7 +224,7 @@ pub enum Fault {
     },
     /// The sampling is not uniform.
     #[error(
-        "the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; resample the record, or split it at the gap"
+        "the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; import with --split, which parts the record at gaps, or resample it"
     )]
     TimeStepUneven {
         /// The step, s.

@@ -24,6 +24,6 @@ pub(crate) use rests::{Spans, check_rests, parted, several_runs};
 pub use rotor_base::significant;
 pub(crate) use sampling::{Listing, RESAMPLED_JITTER, ROUNDING_JITTER, Sampling};
 pub(crate) use sampling::{note_swapped, resample, resampled};
-pub(crate) use text::{LEAST_ROWS, TextTable, too_few_rows};
+pub(crate) use text::{HeaderCell, LEAST_ROWS, TextTable, too_few_rows};
 pub(crate) use units::unknown_unit;
 pub use units::{Channel, Dimension, UNITS, Unit};

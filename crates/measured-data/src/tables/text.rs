@@ -76,10 +76,19 @@ pub(crate) struct HeaderCell {
     pub(crate) place: Place,
 }
 
+impl HeaderCell {
+    /// A cell with the unit it has itself.
+    pub(crate) fn new(text: &str, place: Place) -> Self {
+        Self { text: text.to_owned(), full: text.to_owned(), place }
+    }
+}
+
 /// A text table whose header has been read.
 pub(crate) struct TextTable<R> {
     file: String,
     separator: u8,
+    /// Lines of the file before those of `reader`.
+    before: usize,
     reader: csv::Reader<Ending<R>>,
     pending: Option<Row>,
     /// The cells of the first line.
@@ -106,9 +115,14 @@ impl<'a> TextTable<&'a [u8]> {
 }
 
 impl<R: Read> TextTable<R> {
-    /// Opens a table and reads its header, a second line of units in brackets included. Lines that
-    /// begin with `#` are comments.
-    pub(crate) fn open(file: &str, reader: R, separator: u8) -> Result<Self, Problem> {
+    /// A table whose header has been read already, and some lines of its file `before` the rows.
+    pub(crate) fn behind(
+        file: &str,
+        reader: R,
+        (separator, before): (char, usize),
+        header: Vec<HeaderCell>,
+    ) -> Self {
+        let separator = u8::try_from(separator).unwrap_or(b',');
         let reader = ReaderBuilder::new()
             .delimiter(separator)
             .has_headers(false)
@@ -116,15 +130,19 @@ impl<R: Read> TextTable<R> {
             .comment(Some(b'#'))
             .terminator(Terminator::Any(b'\n'))
             .from_reader(Ending { inner: reader, last: b'\n', is_at_end: false });
-        let (file, header) = (file.to_owned(), vec![]);
-        let mut table = Self { file, separator, reader, pending: None, header, is_headless: false };
+        let file = file.to_owned();
+        Self { file, separator, before, reader, pending: None, header, is_headless: false }
+    }
+
+    /// Opens a table and reads its header, a second line of units in brackets included. Lines that
+    /// begin with `#` are comments.
+    pub(crate) fn open(file: &str, reader: R, separator: u8) -> Result<Self, Problem> {
+        let mut table = Self::behind(file, reader, (separator.into(), 0), vec![]);
         let Some(first) = table.row()? else {
             return Err(Problem::new(Place::file(&table.file), too_few_rows(0)));
         };
-        let cell = |(text, at): (&str, usize)| HeaderCell {
-            text: text.to_owned(),
-            full: text.to_owned(),
-            place: Place::at(&table.file, first.line, at),
+        let cell = |(text, at): (&str, usize)| {
+            HeaderCell::new(text, Place::at(&table.file, first.line, at))
         };
         table.header = first.cells(separator).into_iter().map(cell).collect();
         let is_number =
@@ -181,7 +199,7 @@ impl<R: Read> TextTable<R> {
                 refused(Fault::NotText { offset })
             })?;
             if record.iter().any(|field| !field.trim().is_empty()) {
-                let line = end_line - usize::from(is_ended);
+                let line = self.before + end_line - usize::from(is_ended);
                 return Ok(Some(Row { record, line, is_ended }));
             }
         }
@@ -198,8 +216,12 @@ impl<R: Read> TextTable<R> {
         let mut counts = Listing::default();
         let mut usual_decimals = None;
         while let Some(row) = self.row()? {
-            let cells = row.cells(self.separator);
+            let mut cells = row.cells(self.separator);
             let place = Place::at(&self.file, row.line, 1);
+            // separators behind the last field
+            while cells.len() > expected && cells.last().is_some_and(|(text, _)| text.is_empty()) {
+                cells.pop();
+            }
             let last = cells.last().map_or("", |(text, _)| *text);
             let decimals = last.split_once('.').map(|(_, decimals)| decimals.len());
             // a last number with fewer decimals than the rows before promise is cut off as well
@@ -213,7 +235,7 @@ impl<R: Read> TextTable<R> {
             usual_decimals = decimals;
             if cells.len() != expected {
                 let fault = Fault::Other(format!(
-                    "the row has {} fields, the header has {expected}; check separators and decimal commas",
+                    "the row has {} fields, the header has {expected}; check separators and decimal commas, or delete the line if it is no sample",
                     cells.len()
                 ));
                 counts.push(problems, place, fault);
@@ -226,11 +248,12 @@ impl<R: Read> TextTable<R> {
         Ok(())
     }
 
-    /// Reads the numbers of every row in the columns `wanted`, each with its label. `take` gets them
-    /// with the line of the row, or none where the row cannot be read: `problems` then say why.
+    /// Reads the numbers of every row in the columns `wanted`, each with its label; `read` takes them from the texts of
+    /// their columns. `take` gets them with the line of the row, or none where the row cannot be read: `problems` then say why.
     pub(crate) fn numbers(
         self,
         wanted: &[(usize, String)],
+        read: impl Fn(usize, &str) -> Result<f64, Fault>,
         problems: &mut Problems,
         mut take: impl FnMut(Option<&[f64]>, usize, &mut Problems),
     ) -> Result<(), Problem> {
@@ -244,7 +267,7 @@ impl<R: Read> TextTable<R> {
             for (column, label) in wanted {
                 let (text, at) = cells[*column];
                 let field = || Place::at(&file, line, at).field(label);
-                match number(text) {
+                match read(*column, text) {
                     Ok(value) => numbers.push(value),
                     Err(fault @ Fault::NotANumber { .. }) => words.push(problems, field(), fault),
                     Err(fault) => sizes.push(problems, field(), fault),
@@ -292,12 +315,17 @@ pub(crate) fn columns(
 ) -> (Vec<Vec<f64>>, Vec<usize>) {
     let (mut columns, mut lines) = (vec![Vec::new(); wanted.len()], Vec::new());
     let file = Place::file(&table.file);
-    let read = table.numbers(wanted, problems, |numbers, line, _| {
-        for (column, number) in columns.iter_mut().zip(numbers.into_iter().flatten()) {
-            column.push(*number);
-        }
-        lines.push(line);
-    });
+    let read = table.numbers(
+        wanted,
+        |_, text| number(text),
+        problems,
+        |numbers, line, _| {
+            for (column, number) in columns.iter_mut().zip(numbers.into_iter().flatten()) {
+                column.push(*number);
+            }
+            lines.push(line);
+        },
+    );
     if problems.note(read).is_some() && lines.len() < LEAST_ROWS {
         problems.push(file, too_few_rows(lines.len()));
     }

@@ -60,35 +60,41 @@ const fn unit(
 }
 
 /// Every unit known.
-pub const UNITS: [Unit; 45] = {
+pub const UNITS: [Unit; 46] = {
     use Dimension::{
         Angle, Current, Force, Length, MagneticField, MagneticMoment, Number, Temperature, Time,
         Velocity, Voltage,
     };
     [
-        unit("s", Time, 1.0, &["sec", "seconds"]),
-        unit("ms", Time, 1e-3, &["msec"]),
-        unit("us", Time, 1e-6, &["µs", "μs"]),
+        unit("s", Time, 1.0, &["sec", "second", "seconds", "sekunde", "sekunden", "secondes"]),
+        unit("ms", Time, 1e-3, &["msec", "millisecond", "milliseconds"]),
+        unit("us", Time, 1e-6, &["µs", "μs", "usec", "microseconds"]),
+        unit("ns", Time, 1e-9, &["nanoseconds"]),
         unit("min", Time, 60.0, &[]),
         unit("h", Time, 3600.0, &[]),
-        unit("V", Voltage, 1.0, &["volt", "volts"]),
-        unit("mV", Voltage, 1e-3, &[]),
+        unit("V", Voltage, 1.0, &["volt", "volts", "vdc", "V DC"]),
+        unit("mV", Voltage, 1e-3, &["millivolt", "millivolts"]),
         unit("uV", Voltage, 1e-6, &["µV", "μV"]),
         unit("kV", Voltage, 1e3, &[]),
         unit("A", Current, 1.0, &[]),
         unit("mA", Current, 1e-3, &[]),
         unit("uA", Current, 1e-6, &["µA", "μA"]),
-        unit("m", Length, 1.0, &[]),
+        unit("m", Length, 1.0, &["meter", "meters", "metre"]),
         unit("cm", Length, 1e-2, &[]),
-        unit("mm", Length, 1e-3, &[]),
-        unit("um", Length, 1e-6, &["µm", "μm", "micron", "microns"]),
-        unit("nm", Length, 1e-9, &[]),
+        unit("mm", Length, 1e-3, &["millimeter", "millimeters"]),
+        unit(
+            "um",
+            Length,
+            1e-6,
+            &["µm", "μm", "micron", "microns", "micrometer", "micrometers", "mikrometer"],
+        ),
+        unit("nm", Length, 1e-9, &["nanometer", "nanometers"]),
         unit("in", Length, INCH_METRE, &["inch", "inches"]),
         unit("ft", Length, 12.0 * INCH_METRE, &[]),
         unit("m_per_s", Velocity, 1.0, &["m/s"]),
         unit("mm_per_s", Velocity, 1e-3, &["mm/s"]),
         unit("in_per_s", Velocity, INCH_METRE, &["in/s"]),
-        unit("N", Force, 1.0, &[]),
+        unit("N", Force, 1.0, &["newton"]),
         unit("mN", Force, 1e-3, &[]),
         unit("kN", Force, 1e3, &[]),
         unit("lb", Force, POUND_FORCE_NEWTON, &["lbf"]),
@@ -105,7 +111,7 @@ pub const UNITS: [Unit; 45] = {
         unit("memu", MagneticMoment, 1e-6, &[]),
         unit("uemu", MagneticMoment, 1e-9, &["µemu"]),
         unit("rad", Angle, 1.0, &[]),
-        unit("deg", Angle, std::f64::consts::PI / 180.0, &["°"]),
+        unit("deg", Angle, std::f64::consts::PI / 180.0, &["°", "degree", "degrees"]),
         unit("mrad", Angle, 1e-3, &[]),
         unit("C", Temperature, 1.0, &["degC", "°C"]),
         unit("K", Temperature, 1.0, &[]),
@@ -115,9 +121,12 @@ pub const UNITS: [Unit; 45] = {
 };
 
 impl Unit {
-    /// The unit of that name, in any known spelling; case matters (`mN` is no `MN`).
+    /// The unit of that name, in any known spelling; case matters (`mN` is no `MN`) except in words (`Volts`).
     pub fn find(text: &str) -> Option<Self> {
-        UNITS.into_iter().find(|u| u.symbol == text || u.spellings.contains(&text))
+        let exact = UNITS.into_iter().find(|u| u.symbol == text || u.spellings.contains(&text));
+        let is_word = text.len() > 2 && text.chars().all(char::is_alphabetic);
+        let word = || text.to_lowercase();
+        exact.or_else(|| UNITS.into_iter().find(|u| is_word && u.spellings.contains(&&*word())))
     }
 
     /// The number by which a value in this unit is multiplied to be in another one; none if they
@@ -165,17 +174,29 @@ impl Channel {
         format!("{}_{}", self.name, self.unit.symbol)
     }
 
-    /// Reads `name_unit`, `name [unit]` or `name (unit)`.
+    /// Reads `name_unit`, `name [unit]`, `name (unit)`, `name / unit`, `name in unit` or `name, unit`.
     ///
     /// None if there is no unit or an unknown one.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim();
-        let (name, unit) = match text.find(['[', '(']) {
+        let behind = |at: usize, length: usize| {
+            Some((text[..at].trim(), Unit::find(text[at + length..].trim())?))
+        };
+        // the quotient of the standards: `t / s`, `v / m/s`; `speed m/s` is none
+        let quotient = || {
+            let at = text.find(" / ").map(|at| at + 1).or_else(|| text.rfind('/'))?;
+            let last = text[..at].split_whitespace().last();
+            behind(at, 1).filter(|_| last.is_some_and(|last| Unit::find(last).is_none()))
+        };
+        let (name, unit) = match text.rfind(['[', '(']) {
             Some(open) => (text[..open].trim(), Unit::find(strip_brackets(&text[open..]))?),
             // the longest ending that is a unit: field_A_per_m
             None => text
                 .match_indices('_')
-                .find_map(|(at, _)| Some((&text[..at], Unit::find(&text[at + 1..])?)))?,
+                .find_map(|(at, _)| Some((&text[..at], Unit::find(&text[at + 1..])?)))
+                .or_else(|| behind(text.rfind(" in ")?, 4))
+                .or_else(|| behind(text.rfind(',')?, 1))
+                .or_else(quotient)?,
         };
         let name = Self::plain_name(name);
         (!name.is_empty()).then_some(Self { name, unit })
@@ -240,6 +261,12 @@ mod tests {
             ("field_A_per_m", Some("field_A_per_m")),
             ("Displacement [µm]", Some("displacement_um")),
             ("actuator force 1 (lb)", Some("actuator_force_1_lb")),
+            ("t / s", Some("t_s")),
+            ("v / m/s", Some("v_m_per_s")),
+            ("Weg in mm", Some("weg_mm")),
+            ("Time, s", Some("time_s")),
+            ("amplifier (ch 1) [Volts]", Some("amplifier__ch_1_V")),
+            ("speed m/s", None),
             ("displacement", None),
             ("displacement_furlong", None),
             ("_s", None),

@@ -23,6 +23,9 @@ pub struct Cli {
     /// What to do.
     #[command(subcommand)]
     pub command: Option<Command>,
+    /// No warnings and no progress on standard error; errors and results stay.
+    #[arg(long, global = true)]
+    pub quiet: bool,
     /// Options of the paper's study.
     #[command(flatten)]
     pub study: StudyArgs,
@@ -47,7 +50,7 @@ pub enum Command {
     Diagnose(DiagnoseArgs),
     /// From a linear actuator upwards by data alone: what each step lacks, gains, and is worth to a rotor.
     Ladder(LadderArgs),
-    /// Import measured data (CSV, MAT, FORC, JSON) into a data folder.
+    /// Import measured data (any text table, xlsx, TDMS, MAT, FORC) into a data folder.
     Import(ImportArgs),
     /// Rotating frequencies of a blade, and the data of a fan plot.
     Modes(ModesArgs),
@@ -76,6 +79,18 @@ pub enum Command {
         /// File to write; never overwritten.
         #[arg(value_name = "FILE", default_value = "case.ron")]
         file: PathBuf,
+    },
+    /// Completions for a shell, to standard output: `hhc completions bash > ~/.local/share/bash-completion/completions/hhc`.
+    Completions {
+        /// The shell.
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+    /// The manual page of `hhc` or of one of its commands, to standard output: `hhc man import | man -l -`.
+    Man {
+        /// The command; the page of `hhc` if left out.
+        #[arg(value_name = "COMMAND")]
+        name: Option<String>,
     },
     /// Show stored results again, and write their report and tables anew.
     Report {
@@ -323,7 +338,7 @@ pub struct ExportArgs {
 /// `hhc import`.
 #[derive(Debug, Clone, Args)]
 pub struct ImportArgs {
-    /// Files to import; each becomes a run of the data folder.
+    /// Files to import; each becomes a run of the data folder. `-` is standard input.
     #[arg(value_name = "FILE", required = true)]
     pub files: Vec<PathBuf>,
     /// Folder to write, never overwritten; the name of the first file without its ending if left out.

@@ -1,6 +1,6 @@
 //! `hhc import`, `hhc check` and `hhc init`.
 
-use super::args::ImportArgs;
+use super::args::{Cli, ImportArgs};
 use super::warn;
 use crate::SimError;
 use crate::case::starting_case;
@@ -8,6 +8,8 @@ use crate::check::check_file;
 use crate::files::write_new;
 use crate::import::{ColumnOptions, ImportReport, ImportRequest, default_folder};
 use crate::output::{Format, Printable, print};
+use crate::problem::{Fault, Place, Problem};
+use clap::CommandFactory;
 use std::path::{Path, PathBuf};
 
 pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
@@ -52,4 +54,28 @@ pub(super) fn init(file: &Path) -> Result<(), SimError> {
         "{0} written: the paper's case, every field commented. Edit it, then `hhc check {0}` and `hhc run {0}`.\n",
         file.display()
     ))
+}
+
+/// Prints the completions for a shell.
+pub(super) fn completions(shell: clap_complete::Shell) -> Result<(), SimError> {
+    let mut text = Vec::new();
+    clap_complete::generate(shell, &mut Cli::command(), "hhc", &mut text);
+    print(&String::from_utf8_lossy(&text))
+}
+
+/// Prints a page of the manual.
+pub(super) fn man(name: Option<&str>) -> Result<(), SimError> {
+    let mut all = Cli::command();
+    all.build();
+    let page = match name {
+        None => all,
+        Some(name) => all.find_subcommand(name).cloned().ok_or_else(|| {
+            let message = format!("there is no command `{name}`; `hhc help` lists them");
+            Problem::new(Place::file("hhc man"), Fault::Other(message))
+        })?,
+    };
+    let mut text = Vec::new();
+    let written = clap_mangen::Man::new(page).render(&mut text);
+    written.map_err(|e| SimError::not_written("the manual page", &e))?;
+    print(&String::from_utf8_lossy(&text))
 }

@@ -23,6 +23,7 @@ use crate::case::{InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case}
 use crate::files::{refuse_input, write_atomic};
 use crate::output::{Format, warnings_text};
 use crate::problem::{Fault, Place, Problems};
+use crate::progress::{is_quiet, set_quiet};
 use clap::Parser;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -62,6 +63,7 @@ fn bug_message(panic: &str) -> String {
 /// # Errors
 /// Whatever stopped it; [`SimError::exit_code`] says what the process should return.
 pub fn execute(cli: &Cli) -> Result<(), SimError> {
+    set_quiet(cli.quiet);
     match &cli.command {
         None => run::study(&cli.study),
         Some(Command::Run(args)) => run::run(args),
@@ -81,12 +83,17 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Section(args)) => section::section(args),
         Some(Command::Check { file, format }) => data::check(file, *format),
         Some(Command::Init { file }) => data::init(file),
+        Some(Command::Completions { shell }) => data::completions(*shell),
+        Some(Command::Man { name }) => data::man(name.as_deref()),
         Some(Command::Report { dir, format }) => run::report(dir, format.form()),
     }
 }
 
 /// Prints warnings to standard error: short on one screen, whole with every table.
 fn warn<T: Display>(warnings: &[T], format: Format) {
+    if is_quiet() {
+        return;
+    }
     eprint!("{}", warnings_text(warnings, format, "in the report, or with --details"));
 }
 

@@ -107,6 +107,30 @@ fn long_records_are_averaged_and_say_so() {
     place.hhc(&["check", "rate"]).done();
 }
 
+#[test]
+fn standard_input_quiet_completions_and_pages() {
+    let place = Place::new();
+    place.write("a.csv", &csv(ACTUATOR, &play(0.2, 400), [1.0, 8.0, 20.0]));
+    // commands below 12 V: a warning
+    let loud = place.hhc(&["import", "a.csv", "-o", "loud"]);
+    assert!(loud.err.contains("warning"), "{}", loud.err);
+    let quiet = place.hhc(&["import", "a.csv", "-o", "quiet", "--quiet"]);
+    assert!(quiet.err.is_empty() && quiet.out.contains("400 samples"), "{}", quiet.err);
+    let ran = std::process::Command::new(env!("CARGO_BIN_EXE_hhc"))
+        .args(["import", "-", "-o", "piped"])
+        .current_dir(place.path())
+        .stdin(std::fs::File::open(place.path().join("a.csv")).unwrap())
+        .output()
+        .unwrap();
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    assert_eq!(place.read("piped/run.csv"), place.read("loud/a.csv"));
+    let text = place.hhc(&["completions", "bash"]).done();
+    assert!(text.contains("_hhc()") && text.contains("--sampling-hz"), "{text}");
+    let page = place.hhc(&["man", "import"]).done();
+    assert!(page.contains(".TH") && page.contains("deg\\-per\\-um"), "{page}");
+    place.hhc(&["man", "imports"]).rejected(&["there is no command `imports`", "hhc help"]);
+}
+
 const FORC: &str = "MicroMag 2900/3900 Data File (Series 0015)\nUnits of measure: cgs\n\"wires\"\nHCal = 1000\nNCrv = 3\nNData = 12\n\n";
 
 #[test]
@@ -295,12 +319,12 @@ fn formats_that_are_not_read() {
     place.write("old.mat", "\0\0\0\0\u{5}\0\0\0\u{1}\0\0\0\0\0\0\0\u{2}\0\0\0u\0________________________________________");
     place.hhc(&["import", "old.mat"]).rejected(&["old.mat: is a MATLAB file of format 4", "'-v7'"]);
     place.write("page.html", "<html>");
-    place.hhc(&["import", "page.html"]).rejected(&["is not recognised as CSV, MAT v5", "--as"]);
+    place.hhc(&["import", "page.html"]).rejected(&["is a page or XML, no table", "as CSV"]);
     place.hhc(&["import", "gone.csv"]).rejected(&["gone.csv: cannot be read"]);
     place.write("a.csv", "0,1,2\n1,2,3\n2,3,4\n");
     place
         .hhc(&["import", "a.csv"])
-        .rejected(&["a.csv:1:1: the 3 columns have no names; name them: --columns time_s,..."]);
+        .rejected(&["a.csv:1:1: the 3 columns have no names; name them: --columns time_s,command_V,displacement_um"]);
     place.write("b.csv", "time_s,a_V,b_V,c_V\n0,1,2,3\n1,2,3,4\n2,3,4,4\n");
     place
         .hhc(&["import", "b.csv"])
@@ -349,9 +373,8 @@ fn names_and_separators_that_are_not_clear() {
     place.hhc(&["import", "a.csv", "--columns", columns]).done();
     let comma = "time_s;command_V;displacement_um\n0,0;1,0;2,0\n0,1;2,0;3,0\n0,2;3,0;5,0\n";
     place.write("b.csv", comma);
-    place
-        .hhc(&["import", "b.csv"])
-        .rejected(&["`0,0` is not a number", "replace the decimal commas"]);
+    let text = place.hhc(&["import", "b.csv", "-o", "comma"]).done();
+    assert!(text.contains("text table, semicolons, decimal commas"), "{text}");
     place.write("c.csv", &comma.replace(',', "."));
     place.hhc(&["import", "c.csv"]).done();
     place.write("d/a.csv", &comma.replace(',', "."));

@@ -11,10 +11,10 @@ mod tests;
 mod value;
 mod write;
 
-use super::columns::{ColumnOptions, choose, name_columns};
+use super::columns::ColumnOptions;
 use super::gather::Reduction;
 use super::{ImportKind, Table};
-use crate::problem::{Fault, Place, Problem, Problems};
+use crate::problem::{Place, Problem, Problems};
 
 pub(super) use value::byte_order;
 pub use value::{MatValue, Variables, read_variables};
@@ -32,27 +32,5 @@ pub(super) fn read_mat(
     let variables = value::read_variables(bytes).map_err(refused)?;
     let found = select::select(&variables, variable).map_err(refused)?;
     drop(variables);
-    let choice = name_columns(options, found.names.as_deref(), found.columns.len())
-        .and_then(|named| choose(named, options, kind, reduction.sampling_hz))
-        .map_err(refused)?;
-    let mut problems = Problems::default();
-    for taken in choice.taken() {
-        let column = &found.columns[taken.source];
-        if let Some((i, value)) = column.iter().enumerate().find(|(_, v)| !v.is_finite()) {
-            let place = Place { line: Some(i + 1), ..Place::file(file) };
-            let fault = Fault::NotFinite { value: *value };
-            problems.push(place.field(taken.channel.label()), fault);
-        }
-    }
-    if !problems.is_empty() {
-        return problems.into_result(None);
-    }
-    let mut gather = choice.gather(file, reduction);
-    for i in 0..found.columns.first().map_or(0, Vec::len) {
-        let numbers = choice.taken().map(|taken| found.columns[taken.source][i]);
-        gather.push(choice.converted(numbers), i + 1, &mut problems);
-    }
-    let parts = gather.finish(&mut problems);
-    let table = parts.map(|parts| (Table { parts, choice }, found.taken));
-    problems.into_result(table)
+    found.table(file, options, kind, reduction)
 }

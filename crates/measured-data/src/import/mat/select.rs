@@ -1,18 +1,8 @@
 //! Which arrays of a MAT file make up the record.
 
 use super::value::{MatValue, Variables};
+use crate::import::whole::WholeColumns;
 use crate::problem::Fault;
-
-/// The columns of a record: names where the file gives them, and the numbers.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct MatColumns {
-    /// Names of the columns, if they are fields.
-    pub(super) names: Option<Vec<String>>,
-    /// The columns, all of one length.
-    pub(super) columns: Vec<Vec<f64>>,
-    /// What was taken, in words.
-    pub(super) taken: String,
-}
 
 /// Most numeric variables listed in a message.
 const LISTED: usize = 12;
@@ -22,7 +12,7 @@ const LISTED: usize = 12;
 ///
 /// A matrix gives its columns without names; rows stand for columns where there are more columns than
 /// rows. A structure gives its numeric vectors, named by their fields.
-pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatColumns, Fault> {
+pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<WholeColumns, Fault> {
     let refused = |path: &str, what: &str| {
         let found = listing(variables);
         Fault::Other(format!("`{path}` {what}; the file has: {found}; choose one with --variable"))
@@ -34,7 +24,7 @@ pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatCol
         (None, []) => return Err(refused("the file", "holds no variable")),
         (None, [(name, value)]) => (value, name.clone()),
         (None, all) => {
-            return vectors(all, "all variables")
+            return structure(all, "all variables")
                 .ok_or_else(|| refused("the file", "holds no vectors of one length"));
         }
     };
@@ -42,11 +32,11 @@ pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<MatCol
         MatValue::Numeric { sizes, values } => matrix(sizes, values)
             .map(|columns| {
                 let taken = format!("{name}, {} numbers", size(sizes, " x "));
-                MatColumns { names: None, columns, taken }
+                WholeColumns { names: None, columns, step_s: None, taken }
             })
             .ok_or("is no matrix of several columns"),
         MatValue::Struct(fields) => {
-            vectors(fields, &name).ok_or("is a structure without vectors of one length")
+            structure(fields, &name).ok_or("is a structure without vectors of one length")
         }
         MatValue::Structs(_) => Err("is an array of structures; choose one as in name(1)"),
         MatValue::Cell(_) => Err("is an array of cells; choose one as in name{1}"),
@@ -75,8 +65,49 @@ fn matrix(sizes: &[usize], values: &[f64]) -> Option<Vec<Vec<f64>>> {
     })
 }
 
+/// The record of a structure: its vectors, its signals, or those of the only structure in it.
+fn structure(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
+    let signals = fields.iter().find(|(field, _)| field == "signals").map(|(_, value)| value);
+    let found = signals.and_then(|signals| vectors(&with_time(fields, signals), name));
+    found.or_else(|| vectors(fields, name)).or_else(|| {
+        let inner = fields.iter().filter_map(|(field, value)| match value {
+            MatValue::Struct(fields) => Some((field, fields)),
+            _ => None,
+        });
+        let &[(field, fields)] = &inner.collect::<Vec<_>>()[..] else { return None };
+        structure(fields, &format!("{name}.{field}"))
+    })
+}
+
+/// The fields of Simulink's "structure with time" beside the columns of its signals, which their labels name.
+fn with_time(fields: &[(String, MatValue)], signals: &MatValue) -> Vec<(String, MatValue)> {
+    let signals = match signals {
+        MatValue::Structs(all) => &all[..],
+        one => std::slice::from_ref(one),
+    };
+    let time = fields.iter().find(|(field, _)| field == "time");
+    let mut all: Vec<(String, MatValue)> =
+        time.map(|(_, time)| ("time_s".to_owned(), time.clone())).into_iter().collect();
+    for (number, signal) in signals.iter().enumerate() {
+        let MatValue::Struct(own) = signal else { continue };
+        let find = |name: &str| own.iter().find(|(field, _)| field == name).map(|(_, v)| v);
+        let label = match find("label") {
+            Some(MatValue::Text(label)) if !label.is_empty() => label.clone(),
+            _ => format!("signal{}", number + 1),
+        };
+        let Some(MatValue::Numeric { sizes, values }) = find("values") else { continue };
+        let columns = matrix(sizes, values).unwrap_or_else(|| vec![values.clone()]);
+        let is_one = columns.len() == 1;
+        for (i, values) in columns.into_iter().enumerate() {
+            let name = if is_one { label.clone() } else { format!("{label}_{}", i + 1) };
+            all.push((name, MatValue::Numeric { sizes: vec![values.len(), 1], values }));
+        }
+    }
+    all
+}
+
 /// The numeric vectors of the commonest length among fields; scalars and others are left out.
-fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
+fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
     let vector = |(name, value): &'_ (String, MatValue)| match value {
         MatValue::Numeric { sizes, values } if sizes.iter().filter(|s| **s != 1).count() == 1 => {
             Some((name.clone(), values.clone()))
@@ -88,7 +119,7 @@ fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<MatColumns> {
     let (names, columns): (Vec<_>, Vec<_>) =
         all.into_iter().filter(|(_, v)| v.len() == longest).unzip();
     let taken = format!("{name}: {} of {longest} samples", names.join(", "));
-    (columns.len() > 1).then_some(MatColumns { names: Some(names), columns, taken })
+    (columns.len() > 1).then_some(WholeColumns { names: Some(names), columns, step_s: None, taken })
 }
 
 /// The steps of a path: a field, then perhaps an index.

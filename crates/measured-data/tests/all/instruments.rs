@@ -1,0 +1,194 @@
+//! One record as many instruments and programs write it: in unchanged, or refused with a remedy that works at once.
+#![expect(clippy::disallowed_methods, reason = "tests read fixtures and what was written")]
+#![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+
+use measured_data::Channel;
+use measured_data::import::{ColumnOptions, ImportRequest, MOST_SAMPLES, import};
+use std::path::{Path, PathBuf};
+
+/// Fewest kinds of recordings, and those of them that go in without an option.
+const LEAST_KINDS: usize = 55;
+const LEAST_IN: usize = 45;
+
+/// A row of `index.tsv`.
+struct Recording {
+    name: String,
+    files: Vec<PathBuf>,
+    output_unit: String,
+    tolerance: f64,
+    step_s: f64,
+    rows: usize,
+    /// Factors from the truth to input and output.
+    factors: [f64; 2],
+    needs: String,
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/instruments")
+}
+
+fn recordings() -> Vec<Recording> {
+    let text = std::fs::read_to_string(folder().join("index.tsv")).unwrap();
+    let recording = |line: &str| {
+        let cells: Vec<&str> = line.split('\t').collect();
+        let number = |i: usize| cells[i].parse::<f64>().unwrap();
+        Recording {
+            name: cells[0].to_owned(),
+            files: cells[1].split(' ').map(|file| folder().join(file)).collect(),
+            output_unit: cells[2].to_owned(),
+            tolerance: number(3),
+            step_s: number(4),
+            rows: cells[5].parse().unwrap(),
+            factors: [number(6), number(7)],
+            needs: cells[8].to_owned(),
+        }
+    };
+    text.lines().map(recording).collect()
+}
+
+/// The numbers of a table and its header.
+fn table(path: &Path) -> (Vec<String>, Vec<Vec<f64>>) {
+    let text = std::fs::read_to_string(path).unwrap();
+    let mut lines = text.lines();
+    let header = lines.next().unwrap().split(',').map(str::to_owned).collect();
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect();
+    (header, lines.map(row).collect())
+}
+
+/// Imports with the options of a line of the shell; the folder, or what was said.
+fn imported(recording: &Recording, options: &str, out: &Path) -> Result<(), String> {
+    let mut words = Vec::new();
+    for (i, part) in options.split('\'').enumerate() {
+        if i % 2 == 1 {
+            words.push(part.to_owned());
+        } else {
+            words.extend(part.split_whitespace().map(str::to_owned));
+        }
+    }
+    let value = |option: &str| {
+        let at = words.iter().position(|word| word == option)?;
+        words.get(at + 1).cloned()
+    };
+    let request = ImportRequest {
+        files: recording.files.clone(),
+        out: out.to_owned(),
+        source: None,
+        kind: None,
+        columns: ColumnOptions { columns: value("--columns"), ..ColumnOptions::default() },
+        variable: None,
+        range: None,
+        sampling_hz: value("--sampling-hz").map(|hz| hz.parse().unwrap()),
+        reduce_to_hz: None,
+        most_samples: MOST_SAMPLES,
+        title: None,
+        deg_per_um: None,
+        split: words.iter().any(|word| word == "--split"),
+    };
+    import(&request).map(|_| ()).map_err(|error| error.to_string())
+}
+
+/// What is wrong with the record that was written, compared with the truth.
+fn wrong(recording: &Recording, truth: &[Vec<f64>], out: &Path) -> Option<String> {
+    let mut tables: Vec<PathBuf> =
+        std::fs::read_dir(out).unwrap().map(|entry| entry.unwrap().path()).collect();
+    tables.retain(|path| path.extension().is_some_and(|e| e == "csv"));
+    if recording.rows == 0 {
+        return (tables.len() < 2).then(|| format!("{} parts", tables.len()));
+    }
+    let [path] = &tables[..] else { return Some(format!("{} tables", tables.len())) };
+    let (header, rows) = table(path);
+    if rows.len() != recording.rows {
+        return Some(format!("{} rows", rows.len()));
+    }
+    let step_s = (rows[rows.len() - 1][0] - rows[0][0]) / (rows.len() - 1) as f64;
+    if (step_s / recording.step_s - 1.0).abs() > 1e-3 {
+        return Some(format!("a step of {step_s} s"));
+    }
+    for (column, unit) in [(1, "V"), (2, recording.output_unit.as_str())] {
+        let found = Channel::parse(&header[column]).unwrap().unit;
+        let Some(factor) = found.factor_to(measured_data::Unit::find(unit).unwrap()) else {
+            return Some(format!("the columns {}", header.join(", ")));
+        };
+        let expected = truth.iter().map(|row| row[column] * recording.factors[column - 1]);
+        let (mut low, mut high, mut off) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+        for (row, expected) in rows.iter().zip(expected) {
+            (low, high) = (low.min(expected), high.max(expected));
+            off = off.max((factor * row[column] - expected).abs());
+        }
+        if off > recording.tolerance * (high - low) {
+            return Some(format!("{} by {:.2e}", header[column], off / (high - low)));
+        }
+    }
+    None
+}
+
+/// The option that a message names, as it stands there.
+fn printed(message: &str) -> String {
+    let options = ["--columns", "--sampling-hz", "--split"].into_iter();
+    let (at, option) = options.filter_map(|o| Some((message.find(o)?, o))).min().unwrap();
+    let rest = message[at + option.len()..].trim_start();
+    let value = match rest.strip_prefix('\'') {
+        Some(rest) => rest.split('\'').next().unwrap(),
+        None => rest.split([' ', ';', '\n']).next().unwrap(),
+    };
+    match option {
+        "--columns" => format!("--columns '{value}'"),
+        // the rate is the user's to know
+        "--sampling-hz" => format!("{option} 200"),
+        _ => option.to_owned(),
+    }
+}
+
+#[test]
+fn any_recording_goes_in_or_says_what_helps() {
+    let (_, truth) = table(&folder().join("truth.csv"));
+    let folder = tempfile::tempdir().unwrap();
+    let all = recordings();
+    let (mut inside, mut helped, mut refused) = (0, 0, 0);
+    let mut flaws = Vec::new();
+    for recording in &all {
+        let name = &recording.name;
+        let out = folder.path().join(name);
+        let said = imported(recording, "", &out);
+        match (said, recording.needs.as_str()) {
+            (Ok(()), "") => {
+                inside += 1;
+                flaws.extend(wrong(recording, &truth, &out).map(|what| format!("{name}: {what}")));
+            }
+            (Ok(()), needs) => {
+                flaws.push(format!("{name}: went in, where it needs {needs}"));
+            }
+            (Err(said), "") => flaws.push(format!("{name}: {said}")),
+            (Err(said), "?") => {
+                refused += 1;
+                let advises = ["save", "export", "write", "copy", "numpy.", "pandas."];
+                if !advises.iter().any(|word| said.contains(word)) {
+                    flaws.push(format!("{name}: no remedy in: {said}"));
+                }
+            }
+            (Err(said), needs) => {
+                helped += 1;
+                let literal = printed(&said);
+                let again = imported(recording, &literal, &folder.path().join("literal"));
+                let _ = std::fs::remove_dir_all(folder.path().join("literal"));
+                if let Err(more) = again {
+                    flaws.push(format!("{name}: {literal} does not help: {more}"));
+                }
+                match imported(recording, needs, &out) {
+                    Ok(()) => {
+                        let what = wrong(recording, &truth, &out);
+                        flaws.extend(what.map(|what| format!("{name}: {what}")));
+                    }
+                    Err(more) => flaws.push(format!("{name}: {needs} does not help: {more}")),
+                }
+            }
+        }
+    }
+    println!(
+        "{} recordings: {inside} in without an option, {helped} with the option that is named, {refused} refused, {} wrong",
+        all.len(),
+        flaws.len()
+    );
+    assert!(flaws.is_empty(), "{}", flaws.join("\n"));
+    assert!(all.len() >= LEAST_KINDS && inside >= LEAST_IN, "{inside} of {}", all.len());
+}

@@ -1,0 +1,3 @@
+//! What `hhc import` makes of recordings.
+
+mod instruments;
