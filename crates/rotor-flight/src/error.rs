@@ -35,8 +35,8 @@ pub enum FlightError {
         /// Of the knot.
         advance_ratio: f64,
     },
-    /// A rotor that cannot be linearised.
-    #[error("the linearised rotor at an advance ratio of {advance_ratio}: {source}")]
+    /// A response of the rotor, or of one blade, and what is linear about it.
+    #[error("the rotor at an advance ratio of {advance_ratio}: {source}")]
     Response {
         /// Of the knot.
         advance_ratio: f64,

@@ -6,7 +6,7 @@
 //!   bias slowly led so that the mean flap angle vanishes.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
-//! - *Failures* ([`failures_of_case`]): what control reaches when a flap, an actuator or a load cell of one blade fails.
+//! - *Failures* ([`failures_of_case`]): what control reaches when a flap or an actuator of one blade, or a load cell, fails.
 //! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
 //!   ([`controllers_of_case`]); the rotor as state space ([`state_space_of_case`]).
 //!

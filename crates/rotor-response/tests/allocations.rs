@@ -14,7 +14,7 @@ use std::sync::Arc;
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Allocations of a chord step: orbit, samples, forces, residual, section loads, step and its mixing with those before.
-const MOST: usize = 32;
+const MOST: usize = 29;
 
 /// Allocations of a long way to an orbit less those of a short one, and its chord steps more, on a blade of so many stations a
 /// piece.
@@ -53,9 +53,13 @@ fn of_more_steps(span_points_per_piece: usize) -> (usize, usize) {
 
 #[test]
 fn a_residual_takes_no_memory_for_each_station() {
-    let [few, many] = [4, 16].map(of_more_steps);
-    let (allocations, steps) = few;
-    println!("{allocations} allocations in {steps} steps");
-    assert!(allocations <= MOST * steps, "{allocations} in {steps}");
-    assert_eq!(few, many);
+    // on one thread: what hands work to others takes memory too
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let [few, many] = pool.install(|| [4, 16].map(of_more_steps));
+    for (allocations, steps) in [few, many] {
+        println!("{allocations} allocations in {steps} steps");
+        assert!(steps >= 2 && allocations <= MOST * steps, "{allocations} in {steps}");
+    }
+    let [few, many] = [few, many].map(|(allocations, steps)| allocations / steps);
+    assert_eq!(few, many, "whole ones in a step");
 }

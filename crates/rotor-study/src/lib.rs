@@ -41,7 +41,7 @@ pub use sensitivity::{
     Assumptions, Sensitivity, SensitivityLine, SensitivityRecord, most_moved, sensitivities,
     sensitivity_lines,
 };
-pub use series::scaled;
+pub use series::{scaled, weighted};
 pub use wake::{FoundWake, PassageLine, WakeResult, WakeUpdateLine, wake_of_case};
 
 /// The example of the crate's README, run as a documentation test.

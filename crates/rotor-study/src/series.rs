@@ -14,7 +14,7 @@ pub fn scaled(series: &HarmonicSeries, factor: f64) -> HarmonicSeries {
 }
 
 /// `factor (a - b)`.
-pub(crate) fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+pub fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
     scaled(&added(a, b, -1.0), factor)
 }
 

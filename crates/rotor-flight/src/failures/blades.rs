@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_response::{ResponseError, SixLoads, hub_loads};
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor};
+use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled, weighted};
 
 /// Amplitude of the motions that a slope is read from, both ways, deg.
 const STEP_DEG: f64 = 0.5;
@@ -36,7 +36,9 @@ impl<'a> BladeByBlade<'a> {
                 still[flap] = moved;
                 rotor.blade_root_loads(still)
             });
-            Ok(difference(&up?, &down?, 1.0 / (2.0 * STEP_DEG)))
+            let (up, down) = (up?, down?);
+            let factor = 1.0 / (2.0 * STEP_DEG);
+            Ok(each(|k| weighted(&up.components[k], &down.components[k], factor)))
         };
         let asked: Vec<_> = (0..flaps)
             .flat_map(|k| harmonics.iter().flat_map(move |&n| [(k, n, 0), (k, n, 1)]))
@@ -45,7 +47,7 @@ impl<'a> BladeByBlade<'a> {
             asked.into_par_iter().map(slope).collect::<Result<Vec<SixLoads>, ResponseError>>()?;
         let at = |blade: usize| {
             let placed = |one: &SixLoads| {
-                let mut all = vec![scaled(one, 0.0); blades];
+                let mut all = vec![each(|_| HarmonicSeries::zero(0)); blades];
                 all[blade] = one.clone();
                 orders(&hub_loads(&all, highest(blades)), blades)
             };
@@ -83,8 +85,7 @@ impl<'a> BladeByBlade<'a> {
         let first = |blade: usize| motions_deg.iter().position(|own| *own == motions_deg[blade]);
         let kinds: Vec<usize> = (0..self.blades).filter(|&b| first(b) == Some(b)).collect();
         let of_kind = |&blade: &usize| {
-            let angles =
-                motions_deg[blade].iter().map(|own| rotor_study::scaled(own, 1f64.to_radians()));
+            let angles = motions_deg[blade].iter().map(|own| scaled(own, 1f64.to_radians()));
             self.rotor.blade_root_loads(angles.collect())
         };
         let found = kinds.par_iter().map(of_kind).collect::<Result<Vec<_>, ResponseError>>()?;
@@ -111,21 +112,6 @@ pub(super) fn of_order(order: usize) -> std::ops::Range<usize> {
     (order - 1) * HUB_OUTPUTS..order * HUB_OUTPUTS
 }
 
-fn difference(up: &SixLoads, down: &SixLoads, factor: f64) -> SixLoads {
-    let components = std::array::from_fn(|k| {
-        let (up, down) = (&up.components[k], &down.components[k]);
-        let one = |n: usize| {
-            let (a, b) = (up.harmonic(n), down.harmonic(n));
-            Harmonic { cosine: factor * (a.cosine - b.cosine), sine: factor * (a.sine - b.sine) }
-        };
-        HarmonicSeries {
-            mean: factor * (up.mean - down.mean),
-            harmonics: (1..=up.harmonics.len()).map(one).collect(),
-        }
-    });
-    SixLoads { components }
-}
-
-fn scaled(loads: &SixLoads, factor: f64) -> SixLoads {
-    SixLoads { components: loads.components.each_ref().map(|own| rotor_study::scaled(own, factor)) }
+fn each(of: impl Fn(usize) -> HarmonicSeries) -> SixLoads {
+    SixLoads { components: std::array::from_fn(of) }
 }

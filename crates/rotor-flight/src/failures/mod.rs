@@ -6,28 +6,30 @@ mod blades;
 use crate::FlightError;
 use blades::{BladeByBlade, Motions, highest, of_order};
 use hhc_control::{
-    ControlError, ControlLayout, Cost, FeedbackLaw, LoadWeights, RelaxedController,
-    RelaxedSettings, TMatrix,
+    ControlError, ControlLayout, FeedbackLaw, LoadWeights, RelaxedController, RelaxedSettings,
+    TMatrix,
 };
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 use rotor_response::ResponseError;
 use rotor_study::case::{Case, FlightValues};
-use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, TrimmedRotor, least_effort};
+use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, TrimmedRotor, least_effort, loads_cost, scaled};
 use serde::Serialize;
 
 /// Cycles of a control.
 const CYCLES: usize = 30;
-/// Weight of the control of each blade, over the largest singular value of T squared: many motions of the blades cancel.
+/// Weight of the control of each blade, 1/V^2, over the square of the largest singular value of the weighted T, 1/V: many
+/// motions of the blades cancel.
 const EFFORT: f64 = 1e-6;
-/// Samples and harmonics of a motion that is cut off.
-const CUT: (usize, usize) = (144, 12);
+/// Azimuths of a revolution at which a voltage is held within its range, and harmonics of what is left.
+const AZIMUTHS: usize = 144;
+const HARMONICS: usize = 12;
 /// What fails by how much.
 const STUCK_DEG: [f64; 2] = [0.0, 3.0];
 const WEAK_SHARE: f64 = 0.8;
 const RANGE_SHARE: f64 = 0.5;
 
-/// What fails: a flap of the first blade, or the measurement of a load.
+/// What fails: a flap of the first blade or its actuator, or the measurement of a hub load.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Failure {
@@ -43,8 +45,8 @@ pub enum Failure {
         /// Its motion over that commanded.
         share: f64,
     },
-    /// The voltage of its actuator is held within a part of the range.
-    Limited {
+    /// The voltage of its actuator is cut off at a part of the range.
+    CutOff {
         /// That part.
         share: f64,
     },
@@ -76,9 +78,9 @@ impl FailureControl {
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",
-            Self::AlikeNotTold => "blades alike, not told",
-            Self::AlikeTold => "blades alike, told",
-            Self::EachTold => "each blade, told",
+            Self::AlikeNotTold => "alike (not told)",
+            Self::AlikeTold => "alike (told)",
+            Self::EachTold => "each blade (told)",
         }
     }
 }
@@ -90,22 +92,27 @@ impl Failure {
             Self::Nothing => "nothing".to_owned(),
             Self::Stuck { deg } => format!("flap stuck at {deg} deg"),
             Self::Weak { share } => format!("flap {:.0} % weak", 100.0 * (1.0 - share)),
-            Self::Limited { share } => format!("flap at {:.0} % of its range", 100.0 * share),
-            Self::LoadLost { load } => format!("{} not measured", LOADS[load.min(5)]),
+            Self::CutOff { share } => {
+                format!("voltage cut off at {:.0} % of its range", 100.0 * share)
+            }
+            Self::LoadLost { load } => format!("{} not measured", load_name(load)),
         }
     }
 
     /// What is left of a commanded motion, over it: what a controller that is told counts on.
     fn left(self) -> f64 {
         match self {
-            Self::Nothing | Self::Limited { .. } | Self::LoadLost { .. } => 1.0,
+            Self::Nothing | Self::CutOff { .. } | Self::LoadLost { .. } => 1.0,
             Self::Stuck { .. } => 0.0,
             Self::Weak { share } => share,
         }
     }
 }
 
-const LOADS: [&str; 6] = ["FX", "FY", "FZ", "MX", "MY", "MZ"];
+/// Name of a hub load, from 0.
+fn load_name(load: usize) -> String {
+    HubLoads::NAMES.get(load).map_or_else(String::new, |name| name.to_uppercase())
+}
 
 /// A failure under a control: loads of the nonlinear rotor, over `J0`, the sound one without control.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -116,13 +123,13 @@ pub struct FailureLine {
     pub control: FailureControl,
     /// `J / J0` at the blade number per rev after the last cycle.
     pub cost_ratio: f64,
-    /// The largest of any cycle under control.
-    pub worst_ratio: f64,
+    /// The largest of any cycle under control after the first, which has none yet; none without control.
+    pub worst_ratio: Option<f64>,
     /// `J` of the loads at 1/rev over `J0`.
     pub once_per_rev_ratio: f64,
     /// `J` of those at 2 to twice the blade number less one per rev, but for the blade number, over `J0`.
     pub other_ratio: f64,
-    /// Largest amplitude of a harmonic of a voltage, V.
+    /// Largest amplitude of a harmonic of a voltage in the last cycle, V.
     pub largest_volt: f64,
 }
 
@@ -131,8 +138,8 @@ pub struct FailureLine {
 pub struct FailureStudy {
     /// The flap of the first blade that fails, from 1: the one with the larger say in the loads.
     pub flap: usize,
-    /// The load whose measurement is lost, `FX FY FZ MX MY MZ` from 0: the one with the largest part in `J0`.
-    pub load: usize,
+    /// Name of the load whose measurement is lost: the one with the largest part in `J0`.
+    pub load: String,
     /// Failure by failure.
     pub lines: Vec<FailureLine>,
 }
@@ -140,12 +147,20 @@ pub struct FailureStudy {
 /// What control reaches at the advance ratio of a validated case under the failures above, with the harmonics, limits and
 /// steps of its flight.
 ///
-/// The rotor is nonlinear, blade by blade, in the inflow of its trim; the flaps follow their voltages without hysteresis.
+/// The rotor is nonlinear, blade by blade, in the inflow and at the controls of its trim; its blades are alike but for the
+/// failure. The flaps follow their voltages, held within the range of the case, without hysteresis.
 ///
 /// # Errors
-/// [`FlightError`]: trim, response, controller.
+/// [`FlightError`]: trim, response, controller; load harmonics below twice the blade number less one.
 pub fn failures_of_case(case: &Case, values: &FlightValues) -> Result<FailureStudy, FlightError> {
-    let advance_ratio = case.advance_ratio;
+    let (advance_ratio, orders) = (case.advance_ratio, highest(case.rotor.blades));
+    if case.response.load_harmonics < orders {
+        return Err(FlightError::OutOfRange {
+            what: "`response.load_harmonics` (per rev)",
+            value: case.response.load_harmonics as f64,
+            expected: "twice the number of blades less one or more, for the loads that failures make",
+        });
+    }
     let rotor = TrimmedRotor::new(case, None)
         .map_err(|source| FlightError::Trim { advance_ratio, source: Box::new(source) })?;
     if rotor.wake_diverged() {
@@ -156,7 +171,7 @@ pub fn failures_of_case(case: &Case, values: &FlightValues) -> Result<FailureStu
     let study = Study::new(case, values, &blades).map_err(response)?;
     let failures = STUCK_DEG.map(|deg| Failure::Stuck { deg }).into_iter().chain([
         Failure::Weak { share: WEAK_SHARE },
-        Failure::Limited { share: RANGE_SHARE },
+        Failure::CutOff { share: RANGE_SHARE },
         Failure::LoadLost { load: study.load },
     ]);
     let lines: Vec<(Failure, FailureControl)> = std::iter::once(Failure::Nothing)
@@ -167,7 +182,7 @@ pub fn failures_of_case(case: &Case, values: &FlightValues) -> Result<FailureStu
         .into_par_iter()
         .map(|(failure, control)| study.line(failure, control))
         .collect::<Result<_, FlightError>>()?;
-    Ok(FailureStudy { flap: study.flap + 1, load: study.load, lines })
+    Ok(FailureStudy { flap: study.flap + 1, load: load_name(study.load), lines })
 }
 
 /// What all lines share.
@@ -176,12 +191,20 @@ struct Study<'a> {
     values: &'a FlightValues,
     advance_ratio: f64,
     gain_deg_per_volt: f64,
-    /// Voltage that is free on both sides of the bias, V.
-    range_volt: f64,
+    /// Ends of the range of the voltages from the bias, V.
+    range_volt: [f64; 2],
     weights: [f64; 6],
+    /// Loads of the sound rotor without control.
     baseline: Vec<f64>,
+    /// The flap and the load that fail, from 0.
     flap: usize,
     load: usize,
+}
+
+/// `J` of the loads of an order.
+fn cost_of(weights: &[f64; 6], loads: &[f64], order: usize) -> f64 {
+    let own: [f64; HUB_OUTPUTS] = std::array::from_fn(|k| loads[of_order(order)][k]);
+    loads_cost(weights, &own)
 }
 
 impl<'a> Study<'a> {
@@ -200,7 +223,7 @@ impl<'a> Study<'a> {
         };
         let say = |flap: usize| {
             let each = (0..blades.harmonics().len()).flat_map(|h| blades.slope(0, flap, h));
-            each.flat_map(|column| &column[of_order(blades.blades())]).map(|z| z * z).sum::<f64>()
+            each.map(|column| cost_of(&weights, column, blades.blades())).sum::<f64>()
         };
         let largest = |count: usize, of: &dyn Fn(usize) -> f64| {
             (0..count).max_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or_default()
@@ -212,18 +235,12 @@ impl<'a> Study<'a> {
             load: largest(6, &part),
             advance_ratio: case.advance_ratio,
             gain_deg_per_volt: case.actuator.ideal_amplitude_deg / case.control.amplitude_volt,
-            range_volt: (high - bias).min(bias - low),
+            range_volt: [low - bias, high - bias],
             blades,
             values,
             weights,
             baseline,
         })
-    }
-
-    /// `J` of the loads of some orders.
-    fn cost(&self, loads: &[f64], orders: impl Iterator<Item = usize>) -> f64 {
-        let weights: Vec<f64> = self.weights.iter().flat_map(|w| [*w, *w]).collect();
-        orders.map(|n| Cost::of(&loads[of_order(n)], &weights, &[], 0.0).loads).sum()
     }
 
     fn line(&self, failure: Failure, control: FailureControl) -> Result<FailureLine, FlightError> {
@@ -234,17 +251,22 @@ impl<'a> Study<'a> {
             _ => Some(Controlled::new(self, failure, control)?),
         };
         let blades = self.blades.blades();
-        let before = self.cost(&self.baseline, std::iter::once(blades));
-        let share = |cost: f64| if before > 0.0 { cost / before } else { 0.0 };
-        let (mut loads, mut worst_ratio, mut largest_volt) = (Vec::new(), 0.0_f64, 0.0_f64);
+        let before = cost_of(&self.weights, &self.baseline, blades);
+        let share = |loads: &[f64], order: usize| {
+            let cost = cost_of(&self.weights, loads, order);
+            if before > 0.0 { cost / before } else { 0.0 }
+        };
+        let (mut loads, mut worst_ratio, mut largest_volt) = (Vec::new(), None, 0.0_f64);
         for cycle in 0..if flown.is_some() { CYCLES } else { 1 } {
-            let still = || vec![HarmonicSeries::zero(0); self.blades.flaps() * blades];
-            let commanded_volt = flown.as_ref().map_or_else(still, |own| own.commanded_volt(self));
+            let commanded_volt = match &flown {
+                Some(own) => own.commanded_volt(self)?,
+                None => vec![HarmonicSeries::zero(0); self.blades.flaps() * blades],
+            };
             loads = self.blades.loads(&self.motions(failure, &commanded_volt)).map_err(respond)?;
             if let Some(own) = &mut flown {
                 if cycle > 0 {
-                    let cost = self.cost(&loads, std::iter::once(blades));
-                    worst_ratio = worst_ratio.max(share(cost));
+                    let worst = worst_ratio.unwrap_or_default();
+                    worst_ratio = Some(share(&loads, blades).max(worst));
                 }
                 largest_volt = commanded_volt
                     .iter()
@@ -259,10 +281,10 @@ impl<'a> Study<'a> {
         Ok(FailureLine {
             failure,
             control,
-            cost_ratio: share(self.cost(&loads, std::iter::once(blades))),
+            cost_ratio: share(&loads, blades),
             worst_ratio,
-            once_per_rev_ratio: share(self.cost(&loads, std::iter::once(1))),
-            other_ratio: share(self.cost(&loads, others)),
+            once_per_rev_ratio: share(&loads, 1),
+            other_ratio: others.map(|n| share(&loads, n)).sum(),
             largest_volt,
         })
     }
@@ -270,29 +292,32 @@ impl<'a> Study<'a> {
     /// How the flaps of all blades move, deg, under commands of every flap of every blade.
     fn motions(&self, failure: Failure, commanded_volt: &[HarmonicSeries]) -> Motions {
         let flaps = self.blades.flaps();
-        let mut motions: Motions = commanded_volt
-            .chunks_exact(flaps)
-            .map(|own| own.iter().map(|v| rotor_study::scaled(v, self.gain_deg_per_volt)).collect())
-            .collect();
-        let hit = &mut motions[0][self.flap];
-        match failure {
-            Failure::Nothing | Failure::LoadLost { .. } => {}
-            Failure::Stuck { deg } => {
-                *hit = HarmonicSeries { mean: deg, ..HarmonicSeries::zero(0) };
-            }
-            Failure::Weak { share } => *hit = rotor_study::scaled(hit, share),
-            Failure::Limited { share } => {
-                let most = share * self.range_volt * self.gain_deg_per_volt;
-                let values: Vec<f64> = uniform_azimuths_rad(CUT.0)
-                    .into_iter()
-                    .map(|psi| hit.value(psi).clamp(-most, most))
-                    .collect();
-                if let Ok(cut) = HarmonicSeries::from_uniform_samples(&values, CUT.1) {
-                    *hit = cut;
+        let moved = |(k, own): (usize, &HarmonicSeries)| {
+            let held = |share: f64| scaled(&self.within(own, share), self.gain_deg_per_volt);
+            match failure {
+                Failure::Stuck { deg } if k == self.flap => {
+                    HarmonicSeries { mean: deg, ..HarmonicSeries::zero(0) }
                 }
+                Failure::Weak { share } if k == self.flap => scaled(&held(1.0), share),
+                Failure::CutOff { share } if k == self.flap => held(share),
+                _ => held(1.0),
             }
+        };
+        let all: Vec<HarmonicSeries> = commanded_volt.iter().enumerate().map(moved).collect();
+        all.chunks_exact(flaps).map(<[HarmonicSeries]>::to_vec).collect()
+    }
+
+    /// A voltage held within a part of the range, V.
+    fn within(&self, volt: &HarmonicSeries, share: f64) -> HarmonicSeries {
+        let [low, high] = self.range_volt.map(|end| share * end);
+        let azimuths = uniform_azimuths_rad(AZIMUTHS);
+        let values: Vec<f64> = azimuths.iter().map(|&psi| volt.value(psi)).collect();
+        if values.iter().all(|value| (low..=high).contains(value)) {
+            return volt.clone();
         }
-        motions
+        let held: Vec<f64> = values.iter().map(|value| value.clamp(low, high)).collect();
+        let weights = vec![1.0 / AZIMUTHS as f64; AZIMUTHS];
+        HarmonicSeries::project(&azimuths, &weights, &held, HARMONICS)
     }
 }
 
@@ -352,12 +377,13 @@ impl Controlled {
         let scale = law.singular_values().first().map_or(0.0, |s| s * s);
         let effort_weight = if is_each { EFFORT * scale } else { least_effort(&law) };
         let own_limit = study.values.amplitude_limit_volt;
+        let free_volt = study.range_volt[1].min(-study.range_volt[0]);
         let limit = |pair: usize| {
             let flap = pair / blades.harmonics().len();
             let is_hit = is_told && moved(flap).contains(&0) && flap % flaps == study.flap;
             match failure {
-                Failure::Limited { share } if is_hit => {
-                    own_limit.min(share * study.range_volt / blades.harmonics().len() as f64)
+                Failure::CutOff { share } if is_hit => {
+                    own_limit.min(share * free_volt / blades.harmonics().len() as f64)
                 }
                 _ => own_limit,
             }
@@ -370,25 +396,22 @@ impl Controlled {
             amplitude_limit_volt: (0..layout.pairs()).map(limit).collect(),
             rate_limit_volt: study.values.rate_limit_volt,
         };
-        let mut controller = RelaxedController::new(&layout, rows.len(), settings)?;
-        if is_each && matches!(failure, Failure::Stuck { .. }) {
-            controller.set_flap_lost(study.flap, true)?;
-        }
+        let controller = RelaxedController::new(&layout, rows.len(), settings)?;
         Ok(Self { controller, t, orders, unread: lost, layout })
     }
 
     /// Voltages of every flap of every blade, about the bias, V.
-    fn commanded_volt(&self, study: &Study<'_>) -> Vec<HarmonicSeries> {
-        let flaps = self.layout.flaps();
+    fn commanded_volt(&self, study: &Study<'_>) -> Result<Vec<HarmonicSeries>, ControlError> {
         let highest = self.layout.harmonics().iter().max().map_or(0, |&n| n as usize);
-        let mut own = vec![HarmonicSeries::zero(highest); flaps];
-        for (pair, parts) in self.controller.control_volt().chunks_exact(2).enumerate() {
+        let mut own = vec![HarmonicSeries::zero(highest); self.layout.flaps()];
+        let volt = self.layout.voltages_volt(self.controller.control_volt())?;
+        for (pair, volt) in volt.into_iter().enumerate() {
             if let Some((flap, n)) = self.layout.flap_and_harmonic(pair) {
-                own[flap].set_harmonic(n as usize, Harmonic { cosine: parts[0], sine: parts[1] });
+                own[flap].set_harmonic(n as usize, volt);
             }
         }
         let all = study.blades.blades() * study.blades.flaps();
-        own.into_iter().cycle().take(all).collect()
+        Ok(own.into_iter().cycle().take(all).collect())
     }
 
     /// The next control from the loads of every order.
@@ -396,8 +419,8 @@ impl Controlled {
         let mut measured: Vec<f64> =
             self.orders.clone().flat_map(|n| loads[of_order(n)].to_vec()).collect();
         if let Some(load) = self.unread {
-            for of_order in measured.chunks_exact_mut(HUB_OUTPUTS) {
-                of_order[2 * load..2 * load + 2].fill(0.0);
+            for loads in measured.chunks_exact_mut(HUB_OUTPUTS) {
+                loads[2 * load..2 * load + 2].fill(0.0);
             }
         }
         self.controller.step(&self.t, &measured).map(|_| ())

@@ -1,5 +1,6 @@
 use super::*;
 use FailureControl::{AlikeNotTold, AlikeTold, EachTold, None};
+use rotor_response::InflowState;
 use rotor_study::case::{AttachedFlowModel, InflowChoice};
 
 fn case() -> Case {
@@ -26,6 +27,22 @@ fn what_each_blade_does_adds_up() {
     let alone = |n: usize| base[of_order(n)].iter().map(|z| z * z).sum::<f64>().sqrt();
     for n in [1, 2, 3, 5, 6, 7] {
         assert!(alone(n) < 1e-9 * alone(4), "{n}/rev: {:e} {:e}", alone(n), alone(4));
+    }
+    // together they are the linearised rotor, found in another way, with its inflow held
+    let whole = rotor.linearised(InflowState::Frozen).unwrap();
+    for (flap, h) in [(0, 0), (0, 3), (1, 1), (1, 2)] {
+        let mut motion = HarmonicSeries::zero(h + 2);
+        motion.set_harmonic(h + 2, Harmonic { cosine: 0.0, sine: 1.0 });
+        let expected = whole.loads(flap, &motion);
+        let mut sum = vec![0.0; HUB_OUTPUTS];
+        for blade in 0..4 {
+            let own = &blades.slope(blade, flap, h)[1][of_order(4)];
+            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        }
+        let size = expected.iter().map(|z| z * z).sum::<f64>().sqrt();
+        let apart = sum.iter().zip(expected).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+        println!("flap {flap}, {}/rev: {:.1e}", h + 2, apart / size);
+        assert!(apart < 1e-3 * size, "flap {flap}, {}/rev: {apart:e} of {size:e}", h + 2);
     }
     let (mut moved, mut linear) = (still, base.clone());
     for (blade, own) in moved.iter_mut().enumerate() {
@@ -65,7 +82,7 @@ fn what_is_left_is_used_and_what_is_told_helps() {
             line.failure.name(),
             line.control.name(),
             line.cost_ratio,
-            line.worst_ratio,
+            line.worst_ratio.unwrap_or(f64::NAN),
             line.once_per_rev_ratio,
             line.other_ratio,
             line.largest_volt
@@ -85,7 +102,25 @@ fn what_is_left_is_used_and_what_is_told_helps() {
     // a flap that stands leaves what blades under one control cannot cancel
     let stuck = Failure::Stuck { deg: 0.0 };
     assert!(of(stuck, AlikeTold).other_ratio > 0.5 && of(stuck, EachTold).other_ratio < 0.05);
+    assert!(of(Failure::Stuck { deg: 3.0 }, None).once_per_rev_ratio > 0.01);
+    let weak = of(Failure::Weak { share: WEAK_SHARE }, AlikeTold).other_ratio;
+    assert!((0.01..0.2).contains(&weak), "{weak}");
+    // who is told stays where nothing is cut off, on all blades
+    let cut = |control| of(Failure::CutOff { share: RANGE_SHARE }, control);
+    assert!(cut(AlikeNotTold).other_ratio > 1e-3 && cut(AlikeTold).other_ratio < 1e-12);
+    assert!(cut(AlikeTold).cost_ratio > cut(AlikeNotTold).cost_ratio);
     // a load cell that reads zero: who is told leaves it out
-    let lost = Failure::LoadLost { load: found.load };
-    assert!(of(lost, AlikeTold).cost_ratio <= of(lost, AlikeNotTold).cost_ratio + 1e-3);
+    let is_lost = |line: &&FailureLine| matches!(line.failure, Failure::LoadLost { .. });
+    let lost = found.lines.iter().find(is_lost).unwrap().failure;
+    assert_eq!(lost.name(), format!("{} not measured", found.load));
+    assert!(of(lost, AlikeTold).cost_ratio < of(lost, AlikeNotTold).cost_ratio);
+}
+
+/// Loads cut off at the blade number would make what failures add look small.
+#[test]
+fn too_few_load_harmonics_are_refused() {
+    let mut case = case();
+    case.response.load_harmonics = 6;
+    let error = failures_of_case(&case, &FlightValues::default()).unwrap_err();
+    assert!(error.to_string().contains("load_harmonics") && error.field() == "flight", "{error}");
 }

@@ -193,8 +193,8 @@ pub struct FlyArgs {
     /// Case file with a section `flight`.
     #[arg(value_name = "CASE.ron")]
     pub case: PathBuf,
-    /// Also show what control reaches when a flap, an actuator or a load cell of one blade fails, at the advance ratio of
-    /// the case: failures.csv. About 20 s.
+    /// Also show what control reaches when a flap or an actuator of one blade, or a load cell, fails, at the advance ratio of
+    /// the case: failures.csv. Some 10 s more.
     #[arg(long)]
     pub failures: bool,
     /// Folder for flight.csv and flight.html; out/ and the name of the case if left out.

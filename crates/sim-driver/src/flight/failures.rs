@@ -2,7 +2,6 @@
 
 use report_page::Section;
 use rotor_flight::{FailureLine, FailureStudy};
-use rotor_study::HubLoads;
 
 /// For people.
 pub(super) fn section(study: &FailureStudy) -> Section {
@@ -11,7 +10,7 @@ pub(super) fn section(study: &FailureStudy) -> Section {
             line.failure.name(),
             line.control.name().to_owned(),
             format!("{:.3}", line.cost_ratio),
-            format!("{:.2}", line.worst_ratio),
+            line.worst_ratio.map_or_else(|| "-".to_owned(), |worst| format!("{worst:.2}")),
             format!("{:.4}", line.once_per_rev_ratio),
             format!("{:.4}", line.other_ratio),
             format!("{:.1}", line.largest_volt),
@@ -21,9 +20,8 @@ pub(super) fn section(study: &FailureStudy) -> Section {
     Section {
         title: "Failures".to_owned(),
         text: format!(
-            "Flap {} of one blade, or the cell of {}. The rotor is nonlinear, each blade for itself, in the inflow of its trim; flaps follow their voltages without hysteresis. J/J0 is at the blade number per rev after 30 cycles, worst of any; 1/rev and others: J of the loads that blades alike cancel, over the same J0.",
-            study.flap,
-            HubLoads::NAMES[study.load.min(5)].to_uppercase()
+            "Flap {} of one blade, or the cell of {}. The rotor is nonlinear, each blade for itself, in the inflow and at the controls of its trim; flaps follow their voltages without hysteresis. J/J0 is at the blade number per rev after 30 cycles, worst of any under control; 1/rev and others: J of the loads that blades alike cancel, over the same J0.",
+            study.flap, study.load
         ),
         header: header.map(str::to_owned).into(),
         rows: study.lines.iter().map(row).collect(),
@@ -35,15 +33,11 @@ pub fn failures_csv(study: &FailureStudy) -> String {
     let header =
         "failure,control,j_over_j0,worst_j_over_j0,once_per_rev_over_j0,others_over_j0,largest_V\n";
     let row = |line: &FailureLine| {
-        let values = [
-            line.cost_ratio,
-            line.worst_ratio,
-            line.once_per_rev_ratio,
-            line.other_ratio,
-            line.largest_volt,
-        ];
+        let worst = line.worst_ratio.map_or_else(String::new, |worst| worst.to_string());
+        let values = [line.once_per_rev_ratio, line.other_ratio, line.largest_volt];
         let values = values.map(|value| value.to_string()).join(",");
-        format!("\"{}\",\"{}\",{values}\n", line.failure.name(), line.control.name())
+        let [failure, control] = [line.failure.name(), line.control.name().to_owned()];
+        format!("{failure},{control},{},{worst},{values}\n", line.cost_ratio)
     };
     header.to_owned() + &study.lines.iter().map(row).collect::<String>()
 }
