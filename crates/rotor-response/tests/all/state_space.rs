@@ -167,16 +167,32 @@ fn in_hover_multiblade_exponents_are_those_of_the_blade_shifted_by_one_per_rev()
     assert!(unmatched(&together.a.complex_eigenvalues(), &unshifted) > 0.3);
 }
 
-/// Response at 4/rev of the constant system in hover, all flaps of a number together.
-fn of_constant_system(system: &MultibladeStateSpace, flap: usize) -> [f64; 12] {
+/// Response of the constant system to a cosine of a flap at 3, 4 or 5 per rev of every blade, at 4 per rev.
+///
+/// ```text
+/// exp(i (4 +- 1) psi_b) = exp(4 i psi) ( cos psi_b +- i sin psi_b ),      4 psi_b = 4 psi up to whole turns
+/// ```
+fn of_constant_system(system: &MultibladeStateSpace, (flap, n): (usize, i32)) -> [f64; 12] {
     let complex = |matrix: &DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
-    let states = system.a.nrows();
-    let half = Complex::new(0.5, 0.0);
-    let input = DVector::from_iterator(3, motion(4).map(|u| u * half));
+    let (states, inputs) = system.b.shape();
+    let mut input = DVector::zeros(inputs);
+    for (k, coordinate) in system.coordinates.iter().enumerate() {
+        let amplitude = match (coordinate, n - 4) {
+            (BladesTogether::Collective, 0) | (BladesTogether::Cosine(1), -1 | 1) => {
+                Complex::new(0.5, 0.0)
+            }
+            (BladesTogether::Sine(1), side @ (-1 | 1)) => Complex::new(0.0, 0.5 * f64::from(side)),
+            _ => Complex::new(0.0, 0.0),
+        };
+        let first = k * inputs / system.coordinates.len() + 3 * flap;
+        for (part, value) in motion(4).into_iter().enumerate() {
+            input[first + part] = amplitude * value;
+        }
+    }
     let turning = Matrix::identity(states, states) * Complex::new(0.0, 4.0);
-    let b = complex(&system.b).columns(3 * flap, 3) * &input;
+    let b = complex(&system.b) * &input;
     let x = (turning - complex(&system.a)).lu().solve(&b).unwrap();
-    parts(&(complex(&system.c) * x + complex(&system.d).columns(3 * flap, 3) * input))
+    parts(&(complex(&system.c) * x + complex(&system.d) * input))
 }
 
 #[test]
@@ -184,11 +200,12 @@ fn in_hover_the_constant_system_answers_as_the_linearised_rotor_does() {
     let mut case = solved(quasi_steady(), 0.0);
     let together = case.0.state_space(&case.1, &case.2).unwrap().multiblade();
     assert_eq!(together.coordinates[3], BladesTogether::Differential);
-    for flap in [0, 1] {
-        let expected = by_the_product(&mut case, (flap, 4));
-        let off = relative_difference(of_constant_system(&together, flap), expected);
-        println!("flap {flap}: constant system in hover {off:.1e}");
-        assert!(off < 1e-4, "{off}");
+    for (flap, n) in [(0, 3), (0, 4), (1, 4), (1, 5)] {
+        let expected = by_the_product(&mut case, (flap, n));
+        let order = i32::try_from(n).unwrap();
+        let off = relative_difference(of_constant_system(&together, (flap, order)), expected);
+        println!("flap {flap}, {n}/rev: constant system in hover {off:.1e}");
+        assert!(off < 1e-3, "{off}");
     }
 }
 
@@ -217,10 +234,13 @@ fn in_flight_the_periodic_blade_answers_as_the_linearised_rotor_does() {
 fn in_flight_the_constant_system_is_told_from_the_periodic_one() {
     let mut case = solved(quasi_steady(), 0.3);
     let together = case.0.state_space(&case.1, &case.2).unwrap().multiblade();
-    let expected = by_the_product(&mut case, (1, 4));
-    let off = relative_difference(of_constant_system(&together, 1), expected);
-    println!("constant system at an advance ratio of 0.3: {off:.2} at 4/rev");
-    assert!(off > 0.01, "{off}");
+    for n in [3, 4, 5] {
+        let expected = by_the_product(&mut case, (1, n));
+        let order = i32::try_from(n).unwrap();
+        let off = relative_difference(of_constant_system(&together, (1, order)), expected);
+        println!("constant system at an advance ratio of 0.3: {off:.2} at {n}/rev");
+        assert!(off > 0.01, "{off}");
+    }
 }
 
 /// What settled lags leave out of the response of unsteady sections.

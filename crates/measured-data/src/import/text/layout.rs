@@ -153,6 +153,23 @@ impl Block {
         self.end - self.start
     }
 
+    /// The first row of the record: one right behind its names is none the less a row of it for a cell of text.
+    fn begin_behind(&self, names: Option<usize>) -> usize {
+        let Some(names) = names else { return self.start };
+        let is_row = |at: &usize| {
+            let row = &self.rows[*at];
+            let is = |column: usize, of: Cell| {
+                row.cells.get(column).is_some_and(|cell| kind(cell, self.decimal) == of)
+            };
+            let is_word = !self.numeric.contains(&0) && is(0, Cell::Text);
+            let count = |of: Cell| self.numeric.iter().filter(|column| is(**column, of)).count();
+            let is_more = count(Cell::Number) > count(Cell::Text);
+            let is_first = self.numeric.first().is_some_and(|first| is(*first, Cell::Number));
+            !row.is_comment && (is_more || is_first) && !is_word
+        };
+        (names + 1..self.start).find(is_row).unwrap_or(self.start)
+    }
+
     /// Words and values that stand in the rows before their first number.
     fn beside(&self) -> impl Iterator<Item = Row> {
         let first = self.numeric.first().copied().unwrap_or(0);
@@ -228,7 +245,8 @@ impl Layout {
         if names.is_none() && units.is_none() && block.separator == ',' {
             refuse_double_commas(above, block.width)?;
         }
-        let (Block { separator, decimal, width, .. }, before) = (&block, block.start);
+        let before = block.begin_behind(names.max(units));
+        let Block { separator, decimal, width, .. } = &block;
         let stated_names = |names: &usize| {
             let preamble = Preamble::read(above, *decimal, [&[], &[]], *width);
             !above[*names].is_comment || preamble.names.len() != block.numeric.len()
@@ -239,7 +257,7 @@ impl Layout {
         stated.extend(block.beside());
         let preamble = Preamble::read(&stated, *decimal, extra, *width);
         let is_stamp = |column: usize| {
-            let row = &block.rows[before];
+            let row = &block.rows[block.start];
             row.cells.get(column).is_some_and(|text| number(text, *decimal).is_none())
         };
         let stamps: Vec<usize> =

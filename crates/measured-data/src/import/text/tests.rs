@@ -134,6 +134,9 @@ fn readings_that_could_be_wrong() {
     assert!(said.contains(&format!("--columns {remedy} --sampling-hz HZ")), "{said}");
     let reduction = Reduction { sampling_hz: reduction, ..REDUCTION };
     assert!(read_with(Cursor::new(text), &options(remedy), reduction).is_ok());
+    // a broken first row is a row
+    let text = "t [s],u [V],x [um]\n0,abc,1\n1,2,3\n2,3,5\n3,4,6\n";
+    assert!(error(text, "").contains("r.csv:2:3: command_V: `abc`"), "{}", error(text, ""));
     // a header that stands twice
     let text =
         "time_s,u_V,x_um\n0,1,2\n1,2,3\n2,3,5\ntime_s,u_V,x_um\n3,4,5\n4,5,6\n5,6,7\n6,7,9\n";
