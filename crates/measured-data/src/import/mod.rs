@@ -7,12 +7,12 @@
 mod columns;
 mod folder;
 mod gather;
+mod in_memory;
 mod mat;
 mod micromag;
 mod sweep;
 mod tdms;
 mod text;
-mod whole;
 mod workbook;
 
 pub use columns::ColumnOptions;

@@ -4,7 +4,7 @@
 //!
 //! Source: National Instruments, "TDMS File Format Internal Structure".
 
-use super::whole::WholeColumns;
+use super::in_memory::WholeColumns;
 use crate::problem::Fault;
 
 /// What a segment begins with.

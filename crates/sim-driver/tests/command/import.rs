@@ -116,12 +116,18 @@ fn standard_input_quiet_completions_and_pages() {
     assert!(loud.err.contains("warning"), "{}", loud.err);
     let quiet = place.hhc(&["import", "a.csv", "-o", "quiet", "--quiet"]);
     assert!(quiet.err.is_empty() && quiet.out.contains("400 samples"), "{}", quiet.err);
-    let ran = std::process::Command::new(env!("CARGO_BIN_EXE_hhc"))
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_hhc"))
         .args(["import", "-", "-o", "piped"])
         .current_dir(place.path())
-        .stdin(std::fs::File::open(place.path().join("a.csv")).unwrap())
-        .output()
+        .stdin(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
         .unwrap();
+    let mut pipe = child.stdin.take().unwrap();
+    std::io::Write::write_all(&mut pipe, place.read("a.csv").as_bytes()).unwrap();
+    drop(pipe);
+    let ran = child.wait_with_output().unwrap();
     assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
     assert_eq!(place.read("piped/run.csv"), place.read("loud/a.csv"));
     let text = place.hhc(&["completions", "bash"]).done();

@@ -1,7 +1,7 @@
 //! Which arrays of a MAT file make up the record.
 
 use super::value::{MatValue, Variables};
-use crate::import::whole::WholeColumns;
+use crate::import::in_memory::WholeColumns;
 use crate::problem::Fault;
 
 /// Most numeric variables listed in a message.

@@ -5,6 +5,7 @@
 
 use super::numbers::{number, stamp};
 use super::preamble::{Preamble, is_key, is_unit_key, unit_of};
+use super::row::Row;
 use crate::problem::Fault;
 use crate::tables::{Channel, Dimension};
 
@@ -12,42 +13,6 @@ use crate::tables::{Channel, Dimension};
 const ABOVE: usize = 12;
 /// Part of the longest run of rows that another reading must reach to be preferred for fewer cells of text.
 const AS_LONG: f64 = 0.7;
-
-/// A line of the head, in cells.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
-    pub(super) cells: Vec<String>,
-    /// Its text, of a comment without the mark.
-    pub(super) text: String,
-    pub(super) is_comment: bool,
-}
-
-impl Row {
-    fn of(line: &str, separator: char) -> Self {
-        let line = line.trim_end_matches(['\n', '\r']);
-        let bare = line.trim_start();
-        let is_comment = bare.starts_with(['#', '%']) || bare.starts_with("//");
-        let text = if is_comment { bare.trim_start_matches(['#', '%', '/']) } else { line };
-        Self { cells: cells(text, separator), text: text.to_owned(), is_comment }
-    }
-
-    /// Its cells without the blank ones at the end.
-    pub(super) fn filled(&self) -> &[String] {
-        let count = self.cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1);
-        &self.cells[..count]
-    }
-}
-
-/// The cells of a line, without quotes; where blanks separate, several are as good as one.
-pub(super) fn cells(line: &str, separator: char) -> Vec<String> {
-    let mut is_quoted = false;
-    let parts = line.split(|c: char| {
-        is_quoted ^= c == '"';
-        !is_quoted && (c == separator || separator == ' ' && c == '\t')
-    });
-    let plain = parts.map(|part| part.trim().trim_matches('"').trim().to_owned());
-    plain.filter(|cell| separator != ' ' || !cell.is_empty()).collect()
-}
 
 /// What a cell is.
 #[derive(Clone, Copy, PartialEq)]

@@ -4,6 +4,7 @@ mod decode;
 mod layout;
 mod numbers;
 mod preamble;
+mod row;
 
 use super::columns::{ColumnOptions, choose, name_columns};
 use super::gather::Reduction;
@@ -105,12 +106,12 @@ impl<'a> Opened<'a> {
         if a.len() != b.len() {
             return Err(message(&format!("they have {} and {} rows", a.len(), b.len())));
         }
-        let time_of = |line: &str, of: usize| layout::cells(line, separator).get(time[of]).cloned();
+        let time_of = |line: &str, of: usize| row::cells(line, separator).get(time[of]).cloned();
         let differs = |(a, b): (&&str, &&str)| time_of(a, 0) != time_of(b, 1);
         if let Some(row) = a.iter().zip(&b).position(differs) {
             return Err(message(&format!("their times differ in row {}", row + 1)));
         }
-        let at = a.first().map_or(0, |line| layout::cells(line, separator).len());
+        let at = a.first().map_or(0, |line| row::cells(line, separator).len());
         let mut both = String::new();
         for (a, b) in a.iter().zip(&b) {
             both.extend([*a, &*separator.to_string(), *b, "\n"]);

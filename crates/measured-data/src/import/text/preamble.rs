@@ -1,7 +1,7 @@
 //! What stands above the numbers of a table: units of its columns, and the stated sampling.
 
-use super::layout::Row;
 use super::numbers::number;
+use super::row::Row;
 use crate::tables::{Dimension, Unit};
 
 /// Words for the time between two samples, letters and digits alone.
