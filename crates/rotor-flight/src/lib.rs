@@ -22,6 +22,7 @@ mod flown;
 mod path;
 mod pilot;
 mod state_space;
+mod tables;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
@@ -33,6 +34,7 @@ pub use flown::{FlightPoint, fly};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 pub use state_space::state_space_of_case;
+pub use tables::{failures_csv, flight_csv, load_amplitudes};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

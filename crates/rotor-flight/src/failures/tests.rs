@@ -1,3 +1,5 @@
+//! Single blades against the whole rotor; what control reaches under each failure.
+
 use super::*;
 use FailureControl::{AlikeNotTold, AlikeTold, EachTold, None};
 use rotor_response::InflowState;

@@ -5,8 +5,9 @@ use super::{folder_or, overridden, warn, write_texts};
 use crate::SimError;
 use crate::case::load_case;
 use crate::files::refuse_unwritable;
-use crate::flight::{failures_csv, flight_csv, flight_html, flown};
+use crate::flight::{flight_csv, flight_html, flown};
 use crate::output::{Format, Printable, print};
+use rotor_flight::failures_csv;
 
 pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);

@@ -1,4 +1,4 @@
-//! What control reaches under failures, as table and CSV.
+//! What control reaches under failures, as a table.
 
 use report_page::Section;
 use rotor_flight::{FailureLine, FailureStudy};
@@ -26,18 +26,4 @@ pub(super) fn section(study: &FailureStudy) -> Section {
         header: header.map(str::to_owned).into(),
         rows: study.lines.iter().map(row).collect(),
     }
-}
-
-/// A row for each failure and control.
-pub fn failures_csv(study: &FailureStudy) -> String {
-    let header =
-        "failure,control,j_over_j0,worst_j_over_j0,once_per_rev_over_j0,others_over_j0,largest_V\n";
-    let row = |line: &FailureLine| {
-        let worst = line.worst_ratio.map_or_else(String::new, |worst| worst.to_string());
-        let values = [line.once_per_rev_ratio, line.other_ratio, line.largest_volt];
-        let values = values.map(|value| value.to_string()).join(",");
-        let [failure, control] = [line.failure.name(), line.control.name().to_owned()];
-        format!("{failure},{control},{},{worst},{values}\n", line.cost_ratio)
-    };
-    header.to_owned() + &study.lines.iter().map(row).collect::<String>()
 }

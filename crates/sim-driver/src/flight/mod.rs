@@ -3,7 +3,6 @@
 mod failures;
 mod page;
 
-pub use failures::failures_csv;
 pub use page::flight_html;
 
 use crate::SimError;
@@ -15,9 +14,8 @@ use crate::progress::Progress;
 use preisach_dyn::ActuatorModel;
 use report_page::Section;
 use rotor_flight::{
-    FailureStudy, FlightError, FlightPoint, FlownCase, FlownController, failures_of_case, fly_case,
+    FailureStudy, FlightError, FlownCase, FlownController, failures_of_case, fly_case,
 };
-use rotor_study::HubLoads;
 use serde::Serialize;
 
 /// What a case without a flight is told.
@@ -139,67 +137,9 @@ fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
     notes
 }
 
-/// Amplitudes of the six hub loads, N and N m.
-fn load_amplitudes(parts: [f64; 12], [newton, newton_metre]: [f64; 2]) -> [f64; 6] {
-    let mut amplitudes = HubLoads::from_parts(parts).amplitudes();
-    for (k, amplitude) in amplitudes.iter_mut().enumerate() {
-        *amplitude *= if k < 3 { newton } else { newton_metre };
-    }
-    amplitudes
-}
-
 /// Every cycle of every controller: a row each.
 pub fn flight_csv(of: &FlightResult) -> String {
-    let mut rows: Vec<String> = Vec::new();
-    for FlownController { controller, points, .. } in &of.flown.flights {
-        for point in points {
-            let (names, values): (Vec<String>, Vec<f64>) = fields(of, point).into_iter().unzip();
-            if rows.is_empty() {
-                rows.push(format!("controller,{}\n", names.join(",")));
-            }
-            let values: Vec<String> = values.iter().map(f64::to_string).collect();
-            rows.push(format!("{controller},{}\n", values.join(",")));
-        }
-    }
-    rows.concat()
-}
-
-/// Names and values of a cycle.
-fn fields(of: &FlightResult, point: &FlightPoint) -> Vec<(String, f64)> {
-    let mut fields: Vec<(String, f64)> = [
-        ("time_s", point.time_s),
-        ("advance_ratio", point.advance_ratio),
-        ("thrust_share", point.thrust_share),
-        ("j", point.cost),
-        ("j_over_j0", point.cost_ratio),
-        ("power_W", point.power_watt),
-        ("limited", f64::from(u8::from(point.is_limited))),
-        ("held_percent", 100.0 * point.held_share),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into();
-    let both = [("", point.loads), ("_without_control", point.loads_at_rest)];
-    for (ending, loads) in both {
-        let named = HubLoads::NAMES.iter().zip(load_amplitudes(loads, of.units)).enumerate();
-        fields.extend(named.map(|(k, (name, value))| {
-            let unit = if k < 3 { "N" } else { "N_m" };
-            (format!("{name}_{}_per_rev{ending}_{unit}", of.blades), value)
-        }));
-    }
-    let pairs = point.control_volt.chunks_exact(2 * of.harmonics.len()).enumerate();
-    for (flap, control) in pairs {
-        let of_flap = |name: String| format!("flap{}_{name}", flap + 1);
-        let each = of.harmonics.iter().zip(control.chunks_exact(2));
-        fields
-            .extend(each.map(|(n, own)| (of_flap(format!("{n}_per_rev_V")), own[0].hypot(own[1]))));
-        let [low, high] = point.volt[flap];
-        fields.extend(
-            [("lowest_V", low), ("highest_V", high)].map(|(n, v)| (of_flap(n.to_owned()), v)),
-        );
-        let moved = point.flap_deg[flap].iter().enumerate();
-        fields.extend(moved.map(|(k, deg)| (of_flap(format!("{}_per_rev_deg", k + 1)), *deg)));
-    }
-    fields
+    rotor_flight::flight_csv(&of.flown, &of.harmonics, of.blades, of.units)
 }
 
 impl FlightResult {

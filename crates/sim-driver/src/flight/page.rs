@@ -1,11 +1,11 @@
 //! The page of a flight: what happened against time, controllers beside each other.
 
-use super::{FlightResult, failures, load_amplitudes};
+use super::{FlightResult, failures};
 use crate::results::flap_name;
 use maud::{Markup, html};
 use report_page::pictures::{Look, Panel, PointForm, Series, legend};
 use report_page::{Charts, page};
-use rotor_flight::{FlightPoint, FlownController};
+use rotor_flight::{FlightPoint, FlownController, load_amplitudes};
 use rotor_study::HubLoads;
 
 /// A quantity of a cycle.

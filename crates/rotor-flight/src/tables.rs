@@ -1,0 +1,94 @@
+//! Flights and failures as CSV text.
+
+use crate::{FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController};
+use rotor_study::HubLoads;
+
+/// Amplitudes of the six hub loads, N and N m, of cosine and sine parts in the units `m0 Omega^2 R^2` (N) and
+/// `m0 Omega^2 R^3` (N m).
+pub fn load_amplitudes(parts: [f64; 12], [newton, newton_metre]: [f64; 2]) -> [f64; 6] {
+    let mut amplitudes = HubLoads::from_parts(parts).amplitudes();
+    for (k, amplitude) in amplitudes.iter_mut().enumerate() {
+        *amplitude *= if k < 3 { newton } else { newton_metre };
+    }
+    amplitudes
+}
+
+/// Every cycle of every controller as CSV text, a row each: the harmonics commanded and the blade number, per rev, and the units
+/// of force and moment, N and N m, of the flights.
+pub fn flight_csv(
+    flown: &FlownCase,
+    harmonics: &[usize],
+    blades: usize,
+    units: [f64; 2],
+) -> String {
+    let mut rows: Vec<String> = Vec::new();
+    for FlownController { controller, points, .. } in &flown.flights {
+        for point in points {
+            let (names, values): (Vec<String>, Vec<f64>) =
+                fields(point, harmonics, blades, units).into_iter().unzip();
+            if rows.is_empty() {
+                rows.push(format!("controller,{}\n", names.join(",")));
+            }
+            let values: Vec<String> = values.iter().map(f64::to_string).collect();
+            rows.push(format!("{controller},{}\n", values.join(",")));
+        }
+    }
+    rows.concat()
+}
+
+/// Names and values of a cycle.
+fn fields(
+    point: &FlightPoint,
+    harmonics: &[usize],
+    blades: usize,
+    units: [f64; 2],
+) -> Vec<(String, f64)> {
+    let mut fields: Vec<(String, f64)> = [
+        ("time_s", point.time_s),
+        ("advance_ratio", point.advance_ratio),
+        ("thrust_share", point.thrust_share),
+        ("j", point.cost),
+        ("j_over_j0", point.cost_ratio),
+        ("power_W", point.power_watt),
+        ("limited", f64::from(u8::from(point.is_limited))),
+        ("held_percent", 100.0 * point.held_share),
+    ]
+    .map(|(name, value)| (name.to_owned(), value))
+    .into();
+    let both = [("", point.loads), ("_without_control", point.loads_at_rest)];
+    for (ending, loads) in both {
+        let named = HubLoads::NAMES.iter().zip(load_amplitudes(loads, units)).enumerate();
+        fields.extend(named.map(|(k, (name, value))| {
+            let unit = if k < 3 { "N" } else { "N_m" };
+            (format!("{name}_{}_per_rev{ending}_{unit}", blades), value)
+        }));
+    }
+    let pairs = point.control_volt.chunks_exact(2 * harmonics.len()).enumerate();
+    for (flap, control) in pairs {
+        let of_flap = |name: String| format!("flap{}_{name}", flap + 1);
+        let each = harmonics.iter().zip(control.chunks_exact(2));
+        fields
+            .extend(each.map(|(n, own)| (of_flap(format!("{n}_per_rev_V")), own[0].hypot(own[1]))));
+        let [low, high] = point.volt[flap];
+        fields.extend(
+            [("lowest_V", low), ("highest_V", high)].map(|(n, v)| (of_flap(n.to_owned()), v)),
+        );
+        let moved = point.flap_deg[flap].iter().enumerate();
+        fields.extend(moved.map(|(k, deg)| (of_flap(format!("{}_per_rev_deg", k + 1)), *deg)));
+    }
+    fields
+}
+
+/// Failures as CSV text, a row for each failure and control.
+pub fn failures_csv(study: &FailureStudy) -> String {
+    let header =
+        "failure,control,j_over_j0,worst_j_over_j0,once_per_rev_over_j0,others_over_j0,largest_V\n";
+    let row = |line: &FailureLine| {
+        let worst = line.worst_ratio.map_or_else(String::new, |worst| worst.to_string());
+        let values = [line.once_per_rev_ratio, line.other_ratio, line.largest_volt];
+        let values = values.map(|value| value.to_string()).join(",");
+        let [failure, control] = [line.failure.name(), line.control.name().to_owned()];
+        format!("{failure},{control},{},{worst},{values}\n", line.cost_ratio)
+    };
+    header.to_owned() + &study.lines.iter().map(row).collect::<String>()
+}
