@@ -60,7 +60,7 @@ fn fields(
         let named = HubLoads::NAMES.iter().zip(load_amplitudes(loads, units)).enumerate();
         fields.extend(named.map(|(k, (name, value))| {
             let unit = if k < 3 { "N" } else { "N_m" };
-            (format!("{name}_{}_per_rev{ending}_{unit}", blades), value)
+            (format!("{name}_{blades}_per_rev{ending}_{unit}"), value)
         }));
     }
     let pairs = point.control_volt.chunks_exact(2 * harmonics.len()).enumerate();

@@ -1,4 +1,5 @@
 //! Memory taken by a residual of a revolution. Alone in its file: an allocator counts for the whole process.
+#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec};

@@ -1,7 +1,7 @@
 //! Single blades against the whole rotor; what control reaches under each failure.
 
 use super::*;
-use FailureControl::{AlikeNotTold, AlikeTold, EachTold, None};
+use FailureControl::{AlikeNotTold, AlikeTold, EachTold};
 use rotor_response::InflowState;
 use rotor_study::case::{AttachedFlowModel, InflowChoice};
 
@@ -91,7 +91,7 @@ fn what_is_left_is_used_and_what_is_told_helps() {
         );
     }
     let of = |failure, control| study_of(&found, failure, control);
-    let sound = of(Failure::Nothing, None);
+    let sound = of(Failure::Nothing, FailureControl::None);
     assert!((sound.cost_ratio - 1.0).abs() < 1e-9 && sound.other_ratio < 1e-12);
     assert!(of(Failure::Nothing, AlikeNotTold).other_ratio < 1e-12);
     let all = |line: &FailureLine| line.cost_ratio + line.once_per_rev_ratio + line.other_ratio;
@@ -104,7 +104,7 @@ fn what_is_left_is_used_and_what_is_told_helps() {
     // a flap that stands leaves what blades under one control cannot cancel
     let stuck = Failure::Stuck { deg: 0.0 };
     assert!(of(stuck, AlikeTold).other_ratio > 0.5 && of(stuck, EachTold).other_ratio < 0.05);
-    assert!(of(Failure::Stuck { deg: 3.0 }, None).once_per_rev_ratio > 0.01);
+    assert!(of(Failure::Stuck { deg: 3.0 }, FailureControl::None).once_per_rev_ratio > 0.01);
     let weak = of(Failure::Weak { share: WEAK_SHARE }, AlikeTold).other_ratio;
     assert!((0.01..0.2).contains(&weak), "{weak}");
     // who is told stays where nothing is cut off, on all blades
