@@ -36,10 +36,12 @@ fn what_each_blade_does_adds_up() {
         let mut motion = HarmonicSeries::zero(h + 2);
         motion.set_harmonic(h + 2, Harmonic { cosine: 0.0, sine: 1.0 });
         let expected = whole.loads(flap, &motion);
-        let mut sum = vec![0.0; HUB_OUTPUTS];
+        let mut sum = [0.0; HUB_OUTPUTS];
         for blade in 0..4 {
             let own = &blades.slope(blade, flap, h)[1][of_order(4)];
-            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            for (sum, own) in sum.iter_mut().zip(own) {
+                *sum += own;
+            }
         }
         let size = expected.iter().map(|z| z * z).sum::<f64>().sqrt();
         let apart = sum.iter().zip(expected).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
