@@ -121,6 +121,15 @@ fn notes(document: &Document) -> String {
     }
     for array in &document.arrays {
         let _ = writeln!(text, "\n{}: {}", array.name, array.meaning);
+        // the units of the rows stand in the table
+        for (axis, what) in array.axes.iter().skip(1).zip(["columns", "pages"]) {
+            let named = axis.labels.iter().zip(&axis.units).filter(|(_, unit)| !unit.is_empty());
+            let named: Vec<String> =
+                named.map(|(label, unit)| format!("{label} ({unit})")).collect();
+            if !named.is_empty() {
+                let _ = writeln!(text, "{what}: {}", named.join(", "));
+            }
+        }
     }
     text
 }
@@ -224,6 +233,6 @@ mod tests {
         let single = String::from_utf8(file(DataFormat::Csv, "x_one.csv")).unwrap();
         assert!(single.starts_with("load,unit,value\n\"load, 0\",N,0.1\n"), "{single}");
         let notes = String::from_utf8(file(DataFormat::Csv, "x_notes.txt")).unwrap();
-        assert!(notes.contains("three: m"));
+        assert!(notes.contains("three: m\ncolumns: control, 0 (V), control, 1 (V)"), "{notes}");
     }
 }

@@ -17,6 +17,9 @@ enum {
     SETTLING = {{NAME}}_SETTLING_REV * SAMPLES
 };
 
+/* Beyond it a nondimensional load is no load; its squares must stay numbers. */
+static const double LARGEST_LOAD = 1e100;
+
 {{constants}}
 
 /* Sum of a[k sa] b[k sb]; eight partial sums, so that every bit is that of the program it was written by. */
@@ -214,9 +217,14 @@ void {{name}}_start({{name}}_state *s)
         s->is_flap_lost[i] = 0;
     }
     s->is_limited = 0;
+    {{name}}_resync(s);
+    {{t_start}}
+}
+
+void {{name}}_resync({{name}}_state *s)
+{
     s->settling = SETTLING;
     s->sample = s->revolution = 0;
-    {{t_start}}
 }
 
 int {{name}}_cycle({{name}}_state *s, const double loads[LOADS], double advance_ratio)
@@ -224,7 +232,7 @@ int {{name}}_cycle({{name}}_state *s, const double loads[LOADS], double advance_
     double t[LOADS][CONTROLS], z[LOADS];
     int i;
     for (i = 0; i < LOADS; ++i) {
-        if (!s->is_load_lost[i] && !isfinite(loads[i])) {
+        if (!s->is_load_lost[i] && !(fabs(loads[i]) <= LARGEST_LOAD)) {
             return {{NAME}}_BAD_INPUT;
         }
         z[i] = s->is_load_lost[i] ? 0.0 : loads[i];

@@ -3,7 +3,8 @@
 {{about}}
  *
  * C99, also C++. No allocation; all memory is in the state that is handed over.
- * Built without fused operations (-ffp-contract=off) it gives the bits of the program that wrote it.
+ * Built without fused operations (-ffp-contract=off) it gives the voltages of the program that wrote it to 1e-12 of their
+ * limit.
  * Written by hhc; the numbers are those of one case.
  */
 #ifndef {{NAME}}_H
@@ -23,7 +24,7 @@ enum { {{NAME}}_SETTLING_REV = {{settling_rev}} };         /* revolutions of a c
 enum { {{NAME}}_WINDOW_REV = {{window_rev}} };           /* revolutions of a cycle that are */
 
 /* What a call did. */
-enum { {{NAME}}_BAD_INPUT = -1 };          /* a number that is none; nothing was changed */
+enum { {{NAME}}_BAD_INPUT = -1 };          /* a number that is none, or a load beyond 1e100; nothing was changed */
 enum { {{NAME}}_TAKEN = 0 };
 enum { {{NAME}}_STEPPED = 1 };             /* there is a new control */
 
@@ -47,8 +48,12 @@ typedef struct {
 void {{name}}_start({{name}}_state *s);
 
 /* Takes the next sample of the hub loads, {{channel_names}},
- * the first at azimuth 0, {{NAME}}_SAMPLES_PER_REV evenly in a revolution. */
+ * the first at azimuth 0, {{NAME}}_SAMPLES_PER_REV evenly in a revolution. A sample that is refused is not counted: give
+ * another one of the same azimuth, or wait for azimuth 0 and call {{name}}_resync. */
 int {{name}}_sample({{name}}_state *s, const double hub[{{NAME}}_CHANNELS], double advance_ratio);
+
+/* Begins a cycle anew at azimuth 0; control and knowledge stay. */
+void {{name}}_resync({{name}}_state *s);
 
 /* The same for a whole cycle: the harmonics of the loads, each over its unit, were found elsewhere. */
 int {{name}}_cycle({{name}}_state *s, const double loads[{{NAME}}_LOADS], double advance_ratio);

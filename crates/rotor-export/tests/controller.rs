@@ -222,6 +222,14 @@ int main(void)
     NAME_start(&s);
     if (NAME_sample(&s, (const double[6]){NAN, 0, 0, 0, 0, 0}, 0.1) != UPPER_BAD_INPUT) return 2;
     if (NAME_sample(&s, (const double[6]){0, 0, 0, 0, 0, 0}, NAN) != UPPER_BAD_INPUT) return 3;
+    /* samples that are lost would turn the loads: a cycle begins anew */
+    for (i = 0; i < SAMPLES_PER_CYCLE - 3; ++i) {
+        if (NAME_sample(&s, (const double[6]){9, 9, 9, 9, 9, 9}, 0.1) != UPPER_TAKEN) return 6;
+    }
+    if (NAME_sample(&s, (const double[6]){INFINITY, 0, 0, 0, 0, 0}, 0.1) != UPPER_BAD_INPUT) return 7;
+    NAME_resync(&s);
+    for (i = 0; i < UPPER_LOADS; ++i) line[i] = 1e101;
+    if (NAME_cycle(&s, line, 0.1) != UPPER_BAD_INPUT) return 8;
     while (fread(sample, sizeof sample, 1, in) == 1) {
         if (rest == SAMPLES_PER_CYCLE) {
             EVENTS

@@ -137,6 +137,7 @@ fn notes(case: &Case, values: &FlightValues) -> Vec<String> {
     } else {
         "Covariance: zero, since the case states no noise (`flight.noise_percent`).".to_owned()
     });
+    notes.extend(dissimilar_note(case));
     notes
 }
 
@@ -185,10 +186,17 @@ fn load_labels(case: &Case) -> Vec<String> {
     HubLoads::NAMES.iter().flat_map(both).collect()
 }
 
-fn load_axis(case: &Case) -> Axis {
-    let unit = |k: usize| if k < HUB_OUTPUTS / 2 { "m0 Omega^2 R^2" } else { "m0 Omega^2 R^3" };
-    let units = (0..HUB_OUTPUTS).map(|k| unit(k).to_owned()).collect();
-    Axis { name: "load".to_owned(), labels: load_labels(case), units }
+/// Nondimensional loads by their labels: forces, then as many moments.
+pub(crate) fn load_axis(labels: Vec<String>) -> Axis {
+    let unit = |k: usize| if k < labels.len() / 2 { "m0 Omega^2 R^2" } else { "m0 Omega^2 R^3" };
+    let units = (0..labels.len()).map(|k| unit(k).to_owned()).collect();
+    Axis { name: "load".to_owned(), labels, units }
+}
+
+/// What a case with blades unlike the rest is told.
+pub(crate) fn dissimilar_note(case: &Case) -> Option<String> {
+    let told = "`rotor.dissimilar_blades` is left out: all blades are alike here.";
+    (!case.rotor.dissimilar_blades.is_empty()).then(|| told.to_owned())
 }
 
 fn baseline(case: &Case, points: &[(FlightState, &TrimmedRotor)]) -> LabelledArray {
@@ -196,7 +204,7 @@ fn baseline(case: &Case, points: &[(FlightState, &TrimmedRotor)]) -> LabelledArr
         .iter()
         .map(|(_, rotor)| rotor.trim().rotor.hub.harmonic(case.rotor.blades))
         .collect();
-    let axes = vec![load_axis(case), point_axis(points)];
+    let axes = vec![load_axis(load_labels(case)), point_axis(points)];
     let meaning = "Z0: hub loads with the flaps at rest, unit of the row";
     LabelledArray::from_fn("baseline", meaning, axes, |i, j, _| loads[j][i])
 }
@@ -229,8 +237,11 @@ fn sensitivity(
         .collect();
     let name: Vec<String> = set.iter().map(usize::to_string).collect();
     let name = name.join("_");
-    let axes =
-        vec![load_axis(case), Axis::of_unit("control", controls.clone(), "V"), point_axis(points)];
+    let axes = vec![
+        load_axis(load_labels(case)),
+        Axis::of_unit("control", controls.clone(), "V"),
+        point_axis(points),
+    ];
     let t = LabelledArray::from_fn(
         &format!("T_{name}"),
         "T = dZ/du: unit of the row per V",

@@ -1,11 +1,15 @@
 //! The linearised rotor of a case as matrices of state space with names and units.
 
+use crate::exported::{dissimilar_note, load_axis};
 use crate::{FlightError, RotorPath};
 use nalgebra::DMatrix;
 use rotor_export::{Axis, Document, LabelledArray};
 use rotor_response::{BladeStateSpace, BladesTogether};
 use rotor_study::HubLoads;
 use rotor_study::case::Case;
+
+/// Blades from which the coefficients of all together do not change with the azimuth in hover.
+const LEAST_BLADES: usize = 3;
 
 /// State space of the rotor of a case in its trim, flaps at rest: of one blade at azimuths of a revolution, and of all
 /// blades in multiblade coordinates with constant coefficients.
@@ -19,18 +23,25 @@ pub fn state_space_of_case(case: &Case) -> Result<Document, FlightError> {
     let at = |source| FlightError::Response { advance_ratio, source };
     let space = rotor.state_space().map_err(at)?;
     let mut arrays = blade(&space);
-    arrays.extend(multiblade(&space));
-    Ok(Document { title: case.title.clone(), notes: notes(case), arrays })
+    let mut notes = notes(case);
+    if space.blades < LEAST_BLADES {
+        notes.push("Multiblade matrices are left out: with fewer than three blades the loads in the fixed frame change with the azimuth even in hover.".to_owned());
+    } else {
+        arrays.extend(multiblade(&space));
+    }
+    Ok(Document { title: case.title.clone(), notes, arrays })
 }
 
 fn notes(case: &Case) -> Vec<String> {
     let omega = case.rotor.omega_rpm / 60.0 * std::f64::consts::TAU;
-    vec![
+    let mut notes = vec![
         format!("Trim at an advance ratio of {}; changes about it. Derivatives are by azimuth in rad: times {omega} rad/s they are by time.", case.advance_ratio),
         "Blade: x' = A(psi) x + B(psi) u, y = C(psi) x + D(psi) u. x: modal coordinates and their rates. u: angle of each flap (rad, trailing edge down positive) with its first and second derivative. y: loads of this blade on the hub in the fixed frame, m0 Omega^2 R^2 and R^3, X aft, Y starboard, Z up. Blade b of N is the same at psi + 2 pi b / N; the hub feels the sum of all.".to_owned(),
-        "Multiblade: q_b = q_0 + sum q_nc cos n psi_b + q_ns sin n psi_b + (-1)^b q_d, flaps likewise; coefficients are their means over the revolution. Exact in hover; in flight what the harmonics of the coefficients carry from one frequency to another is dropped.".to_owned(),
+        "Multiblade: q_b = q_0 + sum q_nc cos n psi_b + q_ns sin n psi_b + (-1)^b q_d, flaps likewise; coefficients are their means over the revolution. Exact in hover without cyclic pitch; in flight what the harmonics of the coefficients carry from one frequency to another is dropped.".to_owned(),
         "Held: inflow and pilot controls. Quasi-steady: the lag states of the sections, settled at every azimuth; with `aerodynamics.model: QuasiSteady` there are none.".to_owned(),
-    ]
+    ];
+    notes.extend(dissimilar_note(case));
+    notes
 }
 
 /// Names of the modal coordinates of a blade.
@@ -57,13 +68,8 @@ fn flap_inputs(flaps: usize, prefix: &str) -> (Vec<String>, Vec<String>) {
         .unzip()
 }
 
-fn load_axis() -> Axis {
-    let unit = |k: usize| if k < 3 { "m0 Omega^2 R^2" } else { "m0 Omega^2 R^3" };
-    Axis {
-        name: "load".to_owned(),
-        labels: HubLoads::NAMES.iter().map(|name| (*name).to_owned()).collect(),
-        units: (0..HubLoads::NAMES.len()).map(|k| unit(k).to_owned()).collect(),
-    }
+fn hub_axis() -> Axis {
+    load_axis(HubLoads::NAMES.iter().map(|name| (*name).to_owned()).collect())
 }
 
 /// Matrices of one blade over the azimuth.
@@ -108,14 +114,14 @@ fn blade(space: &BladeStateSpace) -> Vec<LabelledArray> {
         of(
             "C",
             "of one blade: unit of the row per unit of the column",
-            &load_axis(),
+            &hub_axis(),
             &columns,
             &space.c,
         ),
         of(
             "D",
             "of one blade: unit of the row per unit of the column",
-            &load_axis(),
+            &hub_axis(),
             &inputs,
             &space.d,
         ),
@@ -166,14 +172,14 @@ fn multiblade(space: &BladeStateSpace) -> Vec<LabelledArray> {
         of(
             "C_multiblade",
             "of all blades, constant: unit of the row per unit of the column",
-            &load_axis(),
+            &hub_axis(),
             &columns,
             &found.c,
         ),
         of(
             "D_multiblade",
             "of all blades, constant: unit of the row per unit of the column",
-            &load_axis(),
+            &hub_axis(),
             &inputs,
             &found.d,
         ),

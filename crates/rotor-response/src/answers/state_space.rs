@@ -6,6 +6,7 @@ use crate::response::system::ResponseSystem;
 use crate::sections::flight_air::Lags;
 use crate::{Condition, ResponseError, RotorSolution, RotorSolver};
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 use rotor_base::rotating_to_fixed;
 use rotor_fem::{ModeKind, OrbitSamples, PeriodicSystem};
 
@@ -114,7 +115,8 @@ impl BladesTogether {
 /// X' = A X + B U,    Z = C X + D U
 /// X = (all q, all q'),   q coordinate by coordinate, mode by mode;   U likewise, flap by flap (delta, delta', delta'');   Z hub loads
 /// ```
-/// In hover it is the periodic rotor itself. In flight the mean of every coefficient is kept and its harmonics are dropped:
+/// In hover without cyclic pitch it is the periodic rotor itself, for three blades or more: the loads of one or two in the fixed
+/// frame keep a part that changes with the azimuth. In flight the mean of every coefficient is kept and its harmonics are dropped:
 /// it answers slow motions, not what the harmonics carry from one frequency to another.
 ///
 /// Source: R. Coleman, A. Feingold, NACA report 1351 (1958); W. Johnson, *Helicopter Theory* (1980), section 8-4.
@@ -151,9 +153,9 @@ impl RotorSolver {
             ..solution.orbit.sample(&self.time)
         };
         let (modes, flaps) = (system.dof(), condition.flap_angles_rad.len());
-        let tangents = system.tangents(&samples)?;
         let base = self.quasi_steady(&system, &samples)?;
         let along_motion = (0..3 * modes)
+            .into_par_iter()
             .map(|column| {
                 let mut moved = samples.clone();
                 let part = match column / modes {
@@ -166,6 +168,7 @@ impl RotorSolver {
             })
             .collect::<Result<Vec<Evaluated>, ResponseError>>()?;
         let along_flaps = (0..3 * flaps)
+            .into_par_iter()
             .map(|column| {
                 let mut points = system.points.clone();
                 for point in &mut points {
@@ -187,13 +190,17 @@ impl RotorSolver {
             d: Vec::new(),
             azimuths_rad,
         };
-        for (p, tangent) in tangents.iter().enumerate() {
-            let mass = (system.mass + &tangent.dqdd).lu();
+        for p in 0..made.azimuths_rad.len() {
+            let of = |part: usize| {
+                let slope = |i: usize, j: usize| along_motion[part * modes + j].forces[(i, p)];
+                DMatrix::from_fn(modes, modes, slope)
+            };
+            let mass = (system.mass + of(2)).lu();
             let solved = |right: DMatrix<f64>| {
                 mass.solve(&-right).ok_or(ResponseError::MassMatrix { modes })
             };
             let forces = DMatrix::from_fn(modes, 3 * flaps, |i, j| along_flaps[j].forces[(i, p)]);
-            let (by_q, by_rate) = (solved(tangent.dq.clone())?, solved(tangent.dqd.clone())?);
+            let (by_q, by_rate) = (solved(of(0))?, solved(of(1))?);
             let by_flaps = solved(forces)?;
             let fixed = |root: DVector<f64>| in_fixed_frame(made.azimuths_rad[p], &root);
             let loads = |of: &[Evaluated]| {

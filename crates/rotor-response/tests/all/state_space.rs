@@ -155,16 +155,25 @@ fn in_hover_multiblade_exponents_are_those_of_the_blade_shifted_by_one_per_rev()
         let near = blade.iter().map(|s| ((s * TAU).exp() - multiplier).norm());
         assert!(near.fold(f64::INFINITY, f64::min) < 1e-4 * multiplier.norm(), "{motion:?}");
     }
-    let together = space.multiblade();
-    let shifts = [0.0, 0.0, 1.0, -1.0];
-    let expected: Vec<Complex<f64>> =
-        shifts.iter().flat_map(|&n| blade.iter().map(move |s| s + Complex::new(0.0, n))).collect();
-    let off = unmatched(&together.a.complex_eigenvalues(), &expected);
-    println!("multiblade exponents differ by {off:.1e} per rad");
-    assert!(off < 1e-6, "{off}");
-    // without the shift they do not fit
-    let unshifted: Vec<Complex<f64>> = (0..4).flat_map(|_| blade.iter().copied()).collect();
-    assert!(unmatched(&together.a.complex_eigenvalues(), &unshifted) > 0.3);
+    let shifted = |shifts: &[f64]| -> Vec<Complex<f64>> {
+        shifts.iter().flat_map(|&n| blade.iter().map(move |s| s + Complex::new(0.0, n))).collect()
+    };
+    // the same blade on hubs of other numbers of blades
+    let hubs: [&[f64]; 4] = [
+        &[0.0, 1.0, -1.0],
+        &[0.0, 0.0, 1.0, -1.0],
+        &[0.0, 1.0, -1.0, 2.0, -2.0],
+        &[0.0, 0.0, 1.0, -1.0, 2.0, -2.0],
+    ];
+    for shifts in hubs {
+        let together = BladeStateSpace { blades: shifts.len(), ..space.clone() }.multiblade();
+        let found = together.a.complex_eigenvalues();
+        let off = unmatched(&found, &shifted(shifts));
+        println!("{} blades: multiblade exponents differ by {off:.1e} per rad", shifts.len());
+        assert!(off < 1e-6, "{off}");
+        // without the shift they do not fit
+        assert!(unmatched(&found, &shifted(&vec![0.0; shifts.len()])) > 0.3);
+    }
 }
 
 /// Response of the constant system to a cosine of a flap at 3, 4 or 5 per rev of every blade, at 4 per rev.

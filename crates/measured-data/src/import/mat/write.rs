@@ -94,6 +94,26 @@ mod tests {
     use super::super::value::read_variables;
     use super::*;
 
+    /// One number, byte by byte by the document of the format.
+    #[test]
+    fn one_number_has_the_bytes_of_the_format() {
+        let value = MatValue::Numeric { sizes: vec![1, 1], values: vec![1.5] };
+        let file = mat_file(&[("x".to_owned(), value)]);
+        let expected: [[u8; 8]; 9] = [
+            [14, 0, 0, 0, 64, 0, 0, 0],
+            [6, 0, 0, 0, 8, 0, 0, 0],
+            [6, 0, 0, 0, 0, 0, 0, 0],
+            [5, 0, 0, 0, 8, 0, 0, 0],
+            [1, 0, 0, 0, 1, 0, 0, 0],
+            [1, 0, 0, 0, 1, 0, 0, 0],
+            [b'x', 0, 0, 0, 0, 0, 0, 0],
+            [9, 0, 0, 0, 8, 0, 0, 0],
+            [0, 0, 0, 0, 0, 0, 0xf8, 0x3f],
+        ];
+        assert_eq!(file[124..128], [0, 1, b'I', b'M']);
+        assert_eq!(file[128..], expected.concat());
+    }
+
     /// Every bit of every number, every name and every text comes back.
     #[test]
     fn what_is_written_is_read_back_bit_by_bit() {
