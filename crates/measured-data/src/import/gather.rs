@@ -28,6 +28,10 @@ const LEAST_PART: usize = 16;
 const MOST_FILLED: usize = 10;
 /// Least part of the steps of the time that a rounded clock makes shorter or longer than the others.
 const LEAST_ROUNDED: f64 = 0.02;
+/// The same where the longer step is twice the shorter: samples that were lost look alike.
+const LEAST_ROUNDED_OF_TWICE: f64 = 0.2;
+/// Largest part of a record that is filled by straight lines, where it is more than [`MOST_FILLED`] samples.
+const MOST_FILLED_SHARE: f64 = 0.05;
 
 /// Samples while they come in.
 ///
@@ -352,6 +356,15 @@ impl Gather {
             }
             Sampling { step_s, jitter: self.jitter(step_s, &label, problems) }
         };
+        let filled = self.gaps.filled;
+        if filled > MOST_FILLED && filled as f64 > MOST_FILLED_SHARE * self.count as f64 {
+            let message = format!(
+                "{filled} of {} samples have no number, more than {:.0} %; where a column has a lower rate than another one, import it from a file of its own",
+                self.count,
+                100.0 * MOST_FILLED_SHARE
+            );
+            problems.push(Place::file(&self.file), Fault::Other(message));
+        }
         if !problems.is_empty() {
             if self.time.faulty {
                 let others = self.labels.iter().map(String::as_str).zip(&self.columns).skip(1);
@@ -416,17 +429,19 @@ impl Gather {
 
     /// The even times behind stamps that a clock rounded, and the step of the clock, s.
     ///
-    /// Equal steps that are rounded to a clock are two whole multiples of its step, one more than the other; none but a
-    /// clock does that. The step is that of the straight line of least squares through the stamps.
+    /// Equal steps that are rounded to a clock are two whole multiples of its step, one more than the other. Where the
+    /// longer is twice the shorter and rare, samples may have been lost: that is no clock. The step is that of the straight line of least squares through the stamps.
     fn rounded(&self) -> Option<(Even, f64)> {
         let &[a, b] = &self.time.steps[..] else { return None };
         let (short, long) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let grain_s = long.0 - short.0;
         let multiple = short.0 / grain_s;
         let rarer = short.1.min(long.1) as f64;
+        let is_twice = (multiple - 1.0).abs() < 0.01;
+        let least = if is_twice { LEAST_ROUNDED_OF_TWICE } else { LEAST_ROUNDED };
         let is_clock = short.0 >= 0.0
             && (multiple - multiple.round()).abs() < 0.01
-            && rarer >= LEAST_ROUNDED * (short.1 + long.1) as f64;
+            && rarer >= least * (short.1 + long.1) as f64;
         let even = Even::through(&self.columns[0], self.block);
         let is_near = |(i, time): (usize, &f64)| {
             let line = even.first_s + even.step_s * self.block as f64 * i as f64;

@@ -296,6 +296,9 @@ fn read_joined(
     paths: [&PathBuf; 2],
     request: &ImportRequest,
 ) -> Result<Option<ReadSource>, Problems> {
+    if paths.iter().any(|path| path.as_os_str() == "-") {
+        return Ok(None);
+    }
     let open = |path: &PathBuf| {
         let source = OpenSource::open(path, request).ok()?;
         let is_text = source.kind == SourceKind::Csv;

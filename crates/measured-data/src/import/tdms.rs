@@ -102,6 +102,8 @@ struct Object {
     values: Vec<f64>,
     unit: Option<String>,
     step_s: Option<f64>,
+    /// Time of its first sample, s.
+    start_s: f64,
     is_scaled: bool,
 }
 
@@ -135,6 +137,7 @@ impl Object {
         let number = value(kind, bytes.take(width(kind)?)?);
         match name.as_str() {
             "wf_increment" => self.step_s = Some(number).filter(|step| *step > 0.0),
+            "wf_start_offset" if number.is_finite() => self.start_s = number,
             "NI_Number_Of_Scales" => self.is_scaled = number > 0.0,
             _ => {}
         }
@@ -173,7 +176,8 @@ pub(super) fn read_tdms(file: &[u8]) -> Result<WholeColumns, Fault> {
             return Err(refused("holds raw data of DAQmx"));
         }
         // a recorder that was stopped leaves the length open
-        let mut segment = Bytes { rest: bytes.take(next.min(bytes.rest.len()))? };
+        let length = if next == usize::MAX { bytes.rest.len() } else { next };
+        let mut segment = Bytes { rest: bytes.take(length)? };
         let mut meta = Bytes { rest: segment.take(raw)? };
         if flags & NEW_LIST != 0 {
             order.clear();
@@ -200,6 +204,9 @@ pub(super) fn read_tdms(file: &[u8]) -> Result<WholeColumns, Fault> {
             raw_data(&mut objects, &order, &mut segment, flags & ALTERNATE != 0)?;
         }
     }
+    if !bytes.rest.is_empty() {
+        return Err(cut());
+    }
     channels(objects)
 }
 
@@ -218,9 +225,13 @@ fn raw_data(
     if chunk == 0 {
         return Ok(());
     }
+    let first = indices.first().map_or(0, |(_, _, count, _)| *count);
+    if alternate && indices.iter().any(|(_, _, count, _)| *count != first) {
+        return Err(refused("holds channels of different lengths whose samples alternate"));
+    }
     while bytes.rest.len() >= chunk {
         if alternate {
-            for _ in 0..indices.first().map_or(0, |(_, _, count, _)| *count) {
+            for _ in 0..first {
                 for (at, kind, ..) in &indices {
                     let number = value(*kind, bytes.take(width(*kind)?)?);
                     objects[*at].values.push(number);
@@ -248,8 +259,10 @@ fn channels(objects: Vec<Object>) -> Result<WholeColumns, Fault> {
         return Err(refused("holds channels that are to be scaled by the reader"));
     }
     let step_s = taken.first().and_then(|object| object.step_s);
-    if taken.iter().any(|object| object.step_s != step_s) {
-        return Err(refused("holds channels of different sampling"));
+    let start = taken.first().map(|object| object.start_s.to_bits());
+    let is_alike = |o: &Object| o.step_s == step_s && Some(o.start_s.to_bits()) == start;
+    if !taken.iter().all(is_alike) {
+        return Err(refused("holds channels of different sampling or start"));
     }
     let names: Vec<String> = taken.iter().map(Object::name).collect();
     let words = format!("{} of {longest} samples", names.join(", "));

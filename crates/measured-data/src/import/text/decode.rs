@@ -6,7 +6,10 @@ use std::io::{BufRead, Cursor, Read};
 /// Longest line taken for text, bytes.
 const LONGEST_LINE: usize = 1 << 20;
 /// Words for no number that begin as comments do.
-const NO_NUMBER: [&[u8]; 5] = [b"#N/A", b"#NV", b"#NUM!", b"#VALUE!", b"#WERT!"];
+const NO_NUMBER: [&[u8]; 12] = [
+    b"#N/A", b"#NV", b"#NUM!", b"#VALUE!", b"#WERT!", b"#DIV/0!", b"#REF!", b"#BEZUG!", b"#NAME?",
+    b"#NULL!", b"#ZAHL!", b"####",
+];
 /// Windows-1252 from 0x80 to 0x9f; what it leaves free stays a control character.
 const WINDOWS: [char; 32] = [
     '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}',

@@ -47,7 +47,27 @@ struct Block {
     width: usize,
 }
 
+/// Whether a number is a whole one with commas of thousands, as `1,234`.
+fn has_thousands(text: &str) -> bool {
+    let digits = text.trim_start_matches(['+', '-']);
+    let mut groups = digits.split(',');
+    let plain = |group: &str| group.bytes().all(|b| b.is_ascii_digit());
+    let leads = |lead: &str| (1..=3).contains(&lead.len()) && plain(lead) && !lead.starts_with('0');
+    groups.next().is_some_and(leads) && groups.all(|group| group.len() == 3 && plain(group))
+}
+
 impl Block {
+    /// Whether fields in quotes, separated by commas, are read with decimal commas where all of a column may be thousands.
+    fn takes_thousands_for_decimals(&self) -> bool {
+        let rows = &self.rows[self.start..self.end];
+        let is_whole = |column: &usize| {
+            let cells = rows.iter().filter_map(|row| row.cells.get(*column));
+            let mut with_commas = cells.filter(|cell| cell.contains(',')).peekable();
+            with_commas.peek().is_some() && with_commas.all(|cell| has_thousands(cell))
+        };
+        (self.separator, self.decimal) == (',', ',') && self.numeric.iter().any(is_whole)
+    }
+
     /// The longest run of rows with two columns of numbers.
     fn find(lines: &[&str], separator: char, decimal: char) -> Option<Self> {
         let rows: Vec<Row> = lines.iter().map(|line| Row::of(line, separator)).collect();
@@ -201,7 +221,9 @@ impl Layout {
     pub(super) fn find(lines: &[&str]) -> Result<Option<Self>, Fault> {
         let separators = [';', '\t', ',', '|', ' '].into_iter();
         let readings = separators.flat_map(|s| [(s, '.'), (s, ',')]);
-        let blocks: Vec<Block> = readings.filter_map(|(s, d)| Block::find(lines, s, d)).collect();
+        let found = readings.filter_map(|(s, d)| Block::find(lines, s, d));
+        let blocks: Vec<Block> =
+            found.filter(|block| !block.takes_thousands_for_decimals()).collect();
         let longest = blocks.iter().map(Block::len).max().unwrap_or(0) as f64;
         let long = blocks.into_iter().filter(|block| block.len() as f64 >= AS_LONG * longest);
         let Some(block) = long.min_by_key(|block| block.texts) else { return Ok(None) };

@@ -1,7 +1,7 @@
 //! The number of a cell: decimal points or commas, thousands separators, missing values, times of day.
 
 /// Words that instruments and spreadsheets write where there is no number, in lower case.
-const MISSING: [&str; 30] = [
+const MISSING: [&str; 36] = [
     "nan",
     "-nan",
     "na",
@@ -32,6 +32,12 @@ const MISSING: [&str; 30] = [
     "#num!",
     "#value!",
     "#wert!",
+    "#div/0!",
+    "#ref!",
+    "#bezug!",
+    "#name?",
+    "#null!",
+    "#zahl!",
 ];
 /// A number beyond this is an instrument's word for overflow, such as the 9.9e37 of SCPI.
 const LARGEST: f64 = 1e20;
@@ -69,7 +75,7 @@ fn written(text: &str, decimal: char) -> Option<f64> {
     if grouped {
         let leads = (1..=3).contains(&groups[0].len()) && !groups[0].starts_with('0');
         // one group of three alone could be decimals
-        let is_clear = groups.len() > 2 || !rest.is_empty() || !digits.contains(other);
+        let is_clear = groups.len() > 2 || rest.starts_with(decimal) || !digits.contains(other);
         if !leads || !is_clear || !groups[1..].iter().all(is_group) {
             return None;
         }
@@ -169,6 +175,8 @@ mod tests {
             // one group of three may be decimals
             ("1,234", '.', None),
             ("1.234", ',', None),
+            ("1,234E-03", '.', None),
+            ("1.234E-3", ',', None),
             ("0,005", '.', None),
             ("12,34.5", '.', None),
             ("abc", '.', None),

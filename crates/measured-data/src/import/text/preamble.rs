@@ -107,7 +107,10 @@ impl Preamble {
             for (i, cell) in cells.iter().enumerate() {
                 match cell.split_once(['=', ':']) {
                     Some((key, value)) if !value.trim().is_empty() => {
-                        found.take(key, &[value.to_owned()], decimal);
+                        let behind = cells.get(i + 1).filter(|next| parts_number(value, next));
+                        let values = std::iter::once(value).chain(behind.map(String::as_str));
+                        let values: Vec<String> = values.map(str::to_owned).collect();
+                        found.take(key, &values, decimal);
                     }
                     _ if i == 0 => found.take(cell, &cells[1..], decimal),
                     _ => {}
@@ -125,13 +128,19 @@ impl Preamble {
         let is = |words: &[&str]| words.contains(&word(key).as_str());
         let is_name =
             word(key).strip_prefix("name").is_some_and(|number| number.parse::<u8>().is_ok());
-        let quantity = || quantity(values.iter().find(|v| !v.is_empty())?, key, decimal);
+        let quantity = || {
+            let at = values.iter().position(|v| !v.is_empty())?;
+            // a comma of thousands has parted the number
+            let is_parted = values.get(at + 1).is_some_and(|next| parts_number(&values[at], next));
+            quantity(&values[at], key, decimal).filter(|_| !is_parted)
+        };
+        let positive = |value: f64| Some(value).filter(|v| *v > 0.0 && v.is_finite());
         if is_name {
             self.names.extend(values.first().cloned());
         } else if is(&STEP) && self.step_s.is_none() {
-            self.step_s = quantity().filter(|step| *step > 0.0 && step.is_finite());
+            self.step_s = quantity().and_then(|q| positive(q.step_s(false)));
         } else if is(&RATE) && self.step_s.is_none() {
-            self.step_s = quantity().map(|hz| 1.0 / hz).filter(|s| *s > 0.0 && s.is_finite());
+            self.step_s = quantity().and_then(|q| positive(q.step_s(true)));
         } else if is(&TIME_UNIT) && self.time_unit.is_none() {
             let unit = values.iter().find_map(|value| unit_of(value));
             let unit = unit.filter(|unit| unit.dimension == Dimension::Time);
@@ -153,8 +162,37 @@ impl Preamble {
     }
 }
 
-/// A time or a rate in s or Hz: the number with the unit behind it, or with that in the brackets of its word.
-fn quantity(text: &str, key: &str, decimal: char) -> Option<f64> {
+/// Whether a cell goes on with the number of the one before: `1` and `000 Hz`, but not twice the same number.
+fn parts_number(value: &str, next: &str) -> bool {
+    let (value, next) = (value.trim(), next.trim());
+    let digits = next.bytes().take_while(u8::is_ascii_digit).count();
+    let leads = (1..=3).contains(&value.len()) && value.bytes().all(|b| b.is_ascii_digit());
+    leads && digits == 3 && value != next
+}
+
+/// A time, s, or a rate, Hz.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Quantity {
+    Time(f64),
+    Rate(f64),
+    /// No unit stands beside it.
+    Bare(f64),
+}
+
+impl Quantity {
+    /// The step that it is, s: its unit says so, or else its word, which is that of a rate or not.
+    fn step_s(self, word_is_rate: bool) -> f64 {
+        match self {
+            Self::Time(s) => s,
+            Self::Rate(hz) => 1.0 / hz,
+            Self::Bare(value) if word_is_rate => 1.0 / value,
+            Self::Bare(value) => value,
+        }
+    }
+}
+
+/// The number with the unit behind it, or with that in the brackets of its word; none where digits are left behind it.
+fn quantity(text: &str, key: &str, decimal: char) -> Option<Quantity> {
     let text = text.rsplit(':').next().unwrap_or(text).trim();
     let ends = (1..=text.len().min(40)).rev().filter(|end| text.is_char_boundary(*end));
     let (value, unit) = ends.map(|end| text.split_at(end)).find_map(|(value, unit)| {
@@ -162,13 +200,67 @@ fn quantity(text: &str, key: &str, decimal: char) -> Option<f64> {
         value.is_finite().then_some((value, unit.trim()))
     })?;
     let in_key = || Some(key.split_once(['(', '['])?.1.trim_end_matches([')', ']']).trim());
+    if unit.starts_with(|c: char| c.is_ascii_digit() || matches!(c, ',' | '.' | '\'')) {
+        return None;
+    }
     let unit = if unit.is_empty() { in_key().unwrap_or_default() } else { unit };
     let unit = unit.split([',', ' ']).next().unwrap_or_default();
-    let factor = match unit.to_lowercase().as_str() {
-        "" | "hz" | "s/s" | "sa/s" | "1/s" | "sps" => 1.0,
-        "khz" | "ks/s" | "ksa/s" => 1e3,
-        "mhz" | "ms/s" | "msa/s" => 1e6,
-        _ => Unit::find(unit).filter(|own| own.dimension == Dimension::Time)?.to_si,
-    };
-    Some(value * factor)
+    Some(match unit.to_lowercase().as_str() {
+        "" => Quantity::Bare(value),
+        "hz" | "s/s" | "sa/s" | "1/s" | "sps" => Quantity::Rate(value),
+        "khz" | "ks/s" | "ksa/s" => Quantity::Rate(1e3 * value),
+        "mhz" | "ms/s" | "msa/s" => Quantity::Rate(1e6 * value),
+        _ => {
+            let unit = Unit::find(unit).filter(|own| own.dimension == Dimension::Time)?;
+            Quantity::Time(value * unit.to_si)
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_and_rates_are_what_their_units_say() {
+        for (text, key, decimal, expected) in [
+            ("200 Hz", "Sample rate", '.', Some(Quantity::Rate(200.0))),
+            ("10 ms", "Sample rate", '.', Some(Quantity::Time(0.01))),
+            ("51.2 kHz", "Rate", '.', Some(Quantity::Rate(51_200.0))),
+            ("0,005", "Delta_X", ',', Some(Quantity::Bare(0.005))),
+            ("5", "Interval (ms)", '.', Some(Quantity::Time(0.005))),
+            // a separator of thousands, or decimals of three digits
+            ("1,000 Hz", "Sample rate", '.', None),
+            ("10,000", "Sample rate", '.', None),
+            ("51.200 Hz", "Sample rate", ',', Some(Quantity::Rate(51.2))),
+        ] {
+            let found = quantity(text, key, decimal);
+            let close = |a: Quantity, b: Quantity| match (a, b) {
+                (Quantity::Time(a), Quantity::Time(b))
+                | (Quantity::Rate(a), Quantity::Rate(b))
+                | (Quantity::Bare(a), Quantity::Bare(b)) => (a - b).abs() < 1e-9 * b,
+                _ => false,
+            };
+            let same = match (found, expected) {
+                (Some(a), Some(b)) => close(a, b),
+                (a, b) => a == b,
+            };
+            assert!(same, "{text}: {found:?}");
+        }
+        assert!((Quantity::Time(0.01).step_s(true) - 0.01).abs() < 1e-12);
+        assert!((Quantity::Rate(200.0).step_s(false) - 0.005).abs() < 1e-12);
+        assert!((Quantity::Bare(200.0).step_s(true) - 0.005).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_rate_that_a_comma_has_parted_is_no_rate() {
+        let row = |cells: &[&str]| {
+            let mut found = Preamble::default();
+            let cells: Vec<String> = cells.iter().map(|cell| (*cell).to_owned()).collect();
+            found.take(&cells[0], &cells[1..], '.');
+            found.step_s
+        };
+        assert_eq!(row(&["Sample rate", "1", "000 Hz"]), None);
+        assert!(row(&["Sample rate", "100", "100"]).is_some_and(|s| (s - 0.01).abs() < 1e-12));
+    }
 }

@@ -117,6 +117,21 @@ fn readings_that_could_be_wrong() {
     // decimal commas in quotes where commas separate
     let text = "t [s],u [V],x [um]\n\"0,0\",\"1,5\",\"2,5\"\n\"0,1\",\"2,5\",\"3,5\"\n\"0,2\",\"3,5\",\"5,5\"\n";
     assert_eq!(numbers(text).unwrap().1, [[1.5, 2.5, 3.5], [2.5, 3.5, 5.5]]);
+    // thousands in quotes are no decimals
+    let text = "t [s],u [V],x [um]\n0.1,1.5,\"1,234\"\n0.2,2.5,\"1,250\"\n0.3,3.5,\"1,300\"\n";
+    assert!(numbers(text).is_err(), "{:?}", numbers(text));
+    // an exponent does not make a comma one of thousands
+    let text = "t [s];u [V];x [um]\n5,000E-03;5,000E-01;1,250E+00\n1,000E-02;6,000E-01;1,260E+00\n1,500E-02;7,000E-01;1,280E+00\n";
+    assert_eq!(numbers(text).unwrap().1, [[0.5, 0.6, 0.7], [1.25, 1.26, 1.28]]);
+    // samples that were lost are no clock that rounds
+    let row = |k: usize| format!("{};{};{}\n", 5 * k, k % 7, k % 11);
+    let lost: String = (0..105).filter(|k| ![40, 70].contains(k)).map(row).collect();
+    assert!(numbers(&format!("t [ms];u [V];x [um]\n{lost}")).is_err());
+    // a slower column is not made up by straight lines
+    let slow = |k: usize| if k.is_multiple_of(10) { (k % 11).to_string() } else { String::new() };
+    let rows: String = (0..205).map(|k| format!("{k};{};{}\n", k % 7, slow(k))).collect();
+    let said = error(&format!("t [ms];u [V];x [um]\n{rows}"), "");
+    assert!(said.contains("more than 5 %"), "{said}");
     // a missing value in front is no comment: no sample may vanish
     let rows = "1;2\n2;3\n#N/A;3\n4;5\n5;4\n";
     let text = format!("Sample rate: 10 Hz\nu [V];x [um]\n{rows}");
