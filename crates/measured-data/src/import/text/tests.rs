@@ -129,7 +129,8 @@ fn readings_that_could_be_wrong() {
     assert!(numbers(&format!("t [ms];u [V];x [um]\n{lost}")).is_err());
     // a slower column is not made up by straight lines
     let slow = |k: usize| if k.is_multiple_of(10) { (k % 11).to_string() } else { String::new() };
-    let rows: String = (0..205).map(|k| format!("{k};{};{}\n", k % 7, slow(k))).collect();
+    let row = |k: usize| format!("{k};{};{}\n", k % 7, slow(k));
+    let rows: String = (0..205).map(row).collect();
     let said = error(&format!("t [ms];u [V];x [um]\n{rows}"), "");
     assert!(said.contains("more than 5 %"), "{said}");
     // a missing value in front is no comment: no sample may vanish
