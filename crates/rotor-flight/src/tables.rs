@@ -84,11 +84,15 @@ pub fn failures_csv(study: &FailureStudy) -> String {
     let header =
         "failure,control,j_over_j0,worst_j_over_j0,once_per_rev_over_j0,others_over_j0,largest_V\n";
     let row = |line: &FailureLine| {
-        let worst = line.worst_ratio.map_or_else(String::new, |worst| worst.to_string());
-        let values = [line.once_per_rev_ratio, line.other_ratio, line.largest_volt];
-        let values = values.map(|value| value.to_string()).join(",");
-        let [failure, control] = [line.failure.name(), line.control.name().to_owned()];
-        format!("{failure},{control},{},{worst},{values}\n", line.cost_ratio)
+        let number = |value: f64| format!("{value:.6}");
+        let numbers = [
+            number(line.cost_ratio),
+            line.worst_ratio.map_or_else(String::new, number),
+            number(line.once_per_rev_ratio),
+            number(line.other_ratio),
+            number(line.largest_volt),
+        ];
+        format!("{},{},{}\n", line.failure.name(), line.control.name(), numbers.join(","))
     };
     header.to_owned() + &study.lines.iter().map(row).collect::<String>()
 }
