@@ -78,7 +78,7 @@ pub(in crate::import) fn byte_order(start: &[u8], named_mat: bool) -> Option<Res
 /// Reads every variable of a MAT file of level 5.
 ///
 /// # Errors
-/// What is damaged, with the byte offset; those of [`byte_order`].
+/// What is damaged, with the byte offset; a file of no such format.
 pub fn read_variables(file: &[u8]) -> Result<Variables, Fault> {
     let unknown = || {
         let at = Bytes::new(&[], 124.min(file.len()), true, false);
