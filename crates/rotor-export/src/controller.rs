@@ -276,6 +276,7 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
         (&spec.knowledge, known)
     {
         let scale = baseline.iter().map(|z| z * z).sum::<f64>() / baseline.len() as f64;
+        let scale = scale.max(f64::MIN_POSITIVE);
         lines.extend([
             list("BASELINE[LOADS]", c_list(baseline.iter().copied()), "Z0 at the start"),
             scalar("FULL_SCALE_VOLT", settings.full_scale_volt, "u_full, V"),
@@ -286,7 +287,7 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
                 settings.baseline_drift,
                 "of Z0 in a cycle, part of the loads",
             ),
-            scalar("MEAN_SQUARE_LOAD", scale.max(f64::MIN_POSITIVE), "of the loads at the start"),
+            scalar("MEAN_SQUARE_LOAD", scale, "of the loads at the start"),
             scalar("PRIOR_VARIANCE", prior, "of an element of T0 u_full"),
             scalar("START_NOISE_VARIANCE", noise, "of a load"),
             scalar(

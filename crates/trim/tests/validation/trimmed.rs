@@ -151,6 +151,22 @@ fn trimmed_power() -> Result<f64, Failure> {
     worst("couplings", 2, imbalances)
 }
 
+/// The response to both flaps at 3/rev, Drees's inflow, the controls of the trim held.
+fn with_moving_flaps(
+    solver: &mut RotorSolver,
+    trimmed: &TrimSolution,
+) -> Result<RotorSolution, Failure> {
+    let mut angle = HarmonicSeries::zero(3);
+    angle.set_harmonic(3, Harmonic { cosine: 0.03, sine: 0.02 });
+    let condition = Condition {
+        bank_rad: trimmed.attitude.roll_rad,
+        flight: trimmed.flight,
+        controls: trimmed.controls,
+        flap_angles_rad: vec![angle.clone(), angle],
+    };
+    Ok(solver.solve(&condition, &LinearInflow::Drees, Some(&trimmed.rotor))?)
+}
+
 /// On the orbit that flaps beside the blade leave, the controls of the trim held.
 fn power_beside_the_blade() -> Result<f64, Failure> {
     let imbalances = COUPLINGS().map(|couplings| {
@@ -166,15 +182,7 @@ fn power_beside_the_blade() -> Result<f64, Failure> {
         let mut solver = RotorSolver::new(Arc::new(rotor), 0.3, tolerances)?;
         let (inflow, settings) = (LinearInflow::Drees, TrimSettings::default());
         let trimmed = trim(&mut solver, &inflow, 0.3, &LEVEL(), &settings, None)?;
-        let mut angle = HarmonicSeries::zero(3);
-        angle.set_harmonic(3, Harmonic { cosine: 0.03, sine: 0.02 });
-        let condition = Condition {
-            bank_rad: trimmed.attitude.roll_rad,
-            flight: trimmed.flight,
-            controls: trimmed.controls,
-            flap_angles_rad: vec![angle.clone(), angle],
-        };
-        let moved = solver.solve(&condition, &inflow, Some(&trimmed.rotor))?;
+        let moved = with_moving_flaps(&mut solver, &trimmed)?;
         let of = |power: PowerBalance| power.imbalance().abs();
         Ok(of(trimmed.rotor.power).max(of(moved.power)))
     });
@@ -193,15 +201,7 @@ fn left_by_tolerances() -> Result<f64, Failure> {
             let mut solver = RotorSolver::new(Arc::clone(&rotor), mu, tolerances)?;
             let inflow = LinearInflow::Drees;
             let trimmed = trim(&mut solver, &inflow, mu, &LEVEL(), &settings, None)?;
-            let mut angle = HarmonicSeries::zero(3);
-            angle.set_harmonic(3, Harmonic { cosine: 0.03, sine: 0.02 });
-            let condition = Condition {
-                bank_rad: trimmed.attitude.roll_rad,
-                flight: trimmed.flight,
-                controls: trimmed.controls,
-                flap_angles_rad: vec![angle.clone(), angle],
-            };
-            let moved = solver.solve(&condition, &inflow, Some(&trimmed.rotor))?;
+            let moved = with_moving_flaps(&mut solver, &trimmed)?;
             let fourth = |of: RotorSolution| of.hub.components.map(|own| own.harmonic(4));
             Ok::<_, Failure>([trimmed.rotor, moved].map(fourth))
         };
