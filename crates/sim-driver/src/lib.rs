@@ -10,7 +10,7 @@
 //! | what an import prints | [`import`] |
 //! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
 //! | the actuators of a case, their use; identified and stored by [`bench_study`] | [`actuator`], [`actuator_use`] |
-//! | one physics alone | [`section`]; modes and wake of [`rotor_study`] printed by [`print`](mod@print) |
+//! | one physics alone | [`section`]; modes, root pitch and wake of [`rotor_study`] in [`print`](mod@print), told by [`study_text`] |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |
 //! | a case flown in time | [`flight`] |
 //! | two results side by side | [`compare`] |

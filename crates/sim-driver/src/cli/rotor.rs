@@ -7,15 +7,14 @@ use super::{
 use crate::SimError;
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, print};
-use crate::print::modes::{fan_csv, modes_of_case};
-use crate::print::root_pitch::root_pitch_of_case;
-use crate::print::wake::wake_files;
+use crate::print::{modes_of_case, root_pitch_of_case, wake_files};
 use crate::problem::Problems;
 use crate::progress::Progress;
 use crate::sweep::at_advance_ratio;
 use crate::sweep::refuse_diverged;
 use rotor_fem::GyroscopicTerms;
 use rotor_study::{AboutState, FAN_SPEEDS, ModesQuestion};
+use study_text::fan_csv;
 
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     refuse_inputs(args.case.as_deref(), args.fan.as_ref())?;

@@ -7,9 +7,6 @@ use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, json, print};
-use crate::print::airloads::{airloads_csv, tip_csv};
-use crate::print::blade_loads::blade_loads_csv;
-use crate::print::wake::vortices_csv;
 use crate::problem::{Fault, Place, Problems};
 use crate::progress::Progress;
 use crate::report::{
@@ -23,6 +20,7 @@ use crate::sweep::{
 use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::Path;
+use study_text::{airloads_csv, blade_loads_csv, tip_csv, vortices_csv};
 use trim::{TrimSolution, WakeTrim};
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {

@@ -1,10 +1,10 @@
 //! Every table of a result.
 
 use crate::output::{Sheet, table_of};
-use crate::print::blade_loads::{moments_table, unlike_table};
 use crate::report::state_lines;
 use crate::results::{ControlLine, Figures, flap_name, set_name};
 use rotor_study::{Forecast, HubLoads, UnlikeBladeLine, is_still};
+use study_text::{moments_table, unlike_table};
 
 /// Every table of a result.
 pub(crate) fn details(figures: &Figures) -> String {

@@ -1,10 +1,9 @@
-//! `hhc wake`: a free wake as a table and as files to look at.
+//! A free wake as a table and as files to look at.
 
-use crate::SimError;
-use crate::case::{Case, LoadedCase};
-use crate::output::{Printable, Sheet, csv_of, table_of};
-use crate::print::revolution::{Revolution, at_nodes, revolution_files};
-use rotor_study::{FoundWake, HubLoads, StudyError, WakeResult, wake_of_case};
+use crate::revolution::{Revolution, at_nodes, revolution_files};
+use report_page::{Sheet, csv_of, table_of};
+use rotor_study::case::Case;
+use rotor_study::{FoundWake, HubLoads, WakeResult};
 use rotor_wake::{
     CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, VortexCrossing,
     WakeError,
@@ -48,25 +47,12 @@ pub fn vortices_csv(wake: &FreeWake, planes_y_r: &[f64], radius_m: f64) -> Strin
     )
 }
 
-/// The wake of a case with plausibility warnings about the case, and its files.
+/// The files of a found wake: geometry, vortices, inflow and convergence as CSV, the wake as VTK, and the revolution with the
+/// loads of the disk for `ParaView`.
 ///
 /// # Errors
-/// The errors of the rotor, of the trim and of the wake.
-pub fn wake_files(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
-    let doubts = || loaded.in_words(loaded.case.value_warnings());
-    let found = wake_of_case(&loaded.case).and_then(|found| {
-        let files = files_of(&found, &loaded.case).map_err(|source| StudyError::Response {
-            field: "inflow.model".to_owned(),
-            source: source.into(),
-        })?;
-        Ok((found.result, files))
-    });
-    let (mut result, files) = found.map_err(|error| loaded.located(error).in_doubt(doubts()))?;
-    result.warnings.splice(0..0, doubts());
-    Ok((result, files))
-}
-
-fn files_of(found: &FoundWake, case: &Case) -> Result<WakeFiles, WakeError> {
+/// [`WakeError`] of a circulation that does not fit the wake.
+pub fn wake_files(found: &FoundWake, case: &Case) -> Result<WakeFiles, WakeError> {
     let FoundWake { result, wake, circulation, inflow, disk } = found;
     let convergence = csv_of(
         &result.updates,
@@ -203,58 +189,57 @@ fn vtk(
     out
 }
 
-impl Printable for WakeResult {
-    fn text(&self) -> String {
-        let mut sheet = Sheet::default();
+/// A wake for people: trim, inflow, passages, hub loads and the updates.
+pub fn wake_text(wake: &WakeResult) -> String {
+    let mut sheet = Sheet::default();
+    sheet.line(format_args!(
+        "Free wake at mu {:.3}: {}",
+        wake.advance_ratio,
+        match (wake.controls_deg, wake.settled) {
+            (Some(_), true) => "settled with the trim",
+            (None, true) => "circulation prescribed, settled",
+            (Some(_), false) if wake.diverged => "diverged, no solution: see the warning",
+            (Some(_), false) => "not settled",
+            (None, false) => "circulation prescribed, not settled",
+        }
+    ));
+    if let Some([theta0, theta1c, theta1s, tilt]) = wake.controls_deg {
         sheet.line(format_args!(
-            "Free wake at mu {:.3}: {}",
-            self.advance_ratio,
-            match (self.controls_deg, self.settled) {
-                (Some(_), true) => "settled with the trim",
-                (None, true) => "circulation prescribed, settled",
-                (Some(_), false) if self.diverged => "diverged, no solution: see the warning",
-                (Some(_), false) => "not settled",
-                (None, false) => "circulation prescribed, not settled",
-            }
+            "Trim       theta0 {theta0:.4} deg, theta1c {theta1c:.4} deg, theta1s {theta1s:.4} deg, shaft tilt {tilt:.4} deg, C_T/sigma {:.5}",
+            wake.ct_sigma
         ));
-        if let Some([theta0, theta1c, theta1s, tilt]) = self.controls_deg {
-            sheet.line(format_args!(
-                "Trim       theta0 {theta0:.4} deg, theta1c {theta1c:.4} deg, theta1s {theta1s:.4} deg, shaft tilt {tilt:.4} deg, C_T/sigma {:.5}",
-                self.ct_sigma
-            ));
-        }
-        sheet.line(format_args!(
-            "Inflow     mean {:.6}, {:.3} of Glauert's; near wake {:.0} deg, core {:.4} R, near wake {:.4} R, mutual {:.4} R",
-            self.mean_inflow,
-            self.mean_over_glauert,
-            self.near_wake_deg,
-            self.core_r,
-            self.near_core_r,
-            self.mutual_core_r
-        ));
-        if let Some(p) = self.closest_passage {
-            sheet.line(format_args!(
-                "Passage    nearest: {:.4} R from the blade at azimuth {:.0} deg, {:.2} R, age {:.0} deg, core {:.4} R",
-                p.distance_r, p.azimuth_deg, p.station_r, p.age_deg, p.core_r
-            ));
-        }
-        if let Some(amplitudes) = self.hub_amplitudes {
-            let loads = HubLoads::NAMES.iter().zip(amplitudes);
-            let hub: Vec<String> =
-                loads.map(|(name, a)| format!("{} {a:.4e}", name.to_uppercase())).collect();
-            sheet.line(format_args!("Hub loads  at the blade number per rev: {}", hub.join(", ")));
-        }
-        sheet.line("");
-        sheet.block(&table_of(
-            &self.updates,
-            &[
-                ("steps", &|u| u.azimuths.to_string()),
-                ("displacement R", &|u| format!("{:.2e}", u.displacement_r)),
-                ("inflow change", &|u| format!("{:.2e}", u.inflow_change)),
-                ("part", &|u| format!("{:.3}", u.part)),
-                ("theta0 deg", &|u| u.theta0_deg.map_or(String::new(), |t| format!("{t:.5}"))),
-            ],
-        ));
-        sheet.finish()
     }
+    sheet.line(format_args!(
+        "Inflow     mean {:.6}, {:.3} of Glauert's; near wake {:.0} deg, core {:.4} R, near wake {:.4} R, mutual {:.4} R",
+        wake.mean_inflow,
+        wake.mean_over_glauert,
+        wake.near_wake_deg,
+        wake.core_r,
+        wake.near_core_r,
+        wake.mutual_core_r
+    ));
+    if let Some(p) = wake.closest_passage {
+        sheet.line(format_args!(
+            "Passage    nearest: {:.4} R from the blade at azimuth {:.0} deg, {:.2} R, age {:.0} deg, core {:.4} R",
+            p.distance_r, p.azimuth_deg, p.station_r, p.age_deg, p.core_r
+        ));
+    }
+    if let Some(amplitudes) = wake.hub_amplitudes {
+        let loads = HubLoads::NAMES.iter().zip(amplitudes);
+        let hub: Vec<String> =
+            loads.map(|(name, a)| format!("{} {a:.4e}", name.to_uppercase())).collect();
+        sheet.line(format_args!("Hub loads  at the blade number per rev: {}", hub.join(", ")));
+    }
+    sheet.line("");
+    sheet.block(&table_of(
+        &wake.updates,
+        &[
+            ("steps", &|u| u.azimuths.to_string()),
+            ("displacement R", &|u| format!("{:.2e}", u.displacement_r)),
+            ("inflow change", &|u| format!("{:.2e}", u.inflow_change)),
+            ("part", &|u| format!("{:.3}", u.part)),
+            ("theta0 deg", &|u| u.theta0_deg.map_or(String::new(), |t| format!("{t:.5}"))),
+        ],
+    ));
+    sheet.finish()
 }

@@ -20,7 +20,7 @@ use std::fmt::Write as _;
 
 /// What a filament carries at its nodes: that of the segment behind a node, of the last one at its end; nothing where the
 /// near wake stands for it.
-pub(super) fn at_nodes(
+pub(crate) fn at_nodes(
     filament: &WakeFilament,
     states: &[Vec<SegmentState>],
     azimuth: usize,
@@ -32,13 +32,13 @@ pub(super) fn at_nodes(
 }
 
 /// What the files show.
-pub(super) struct Revolution<'a> {
-    pub(super) wake: &'a FreeWake,
+pub(crate) struct Revolution<'a> {
+    pub(crate) wake: &'a FreeWake,
     /// Of the rolled-up vortices and of the near wake.
-    pub(super) states: &'a [Vec<FilamentStates>; 2],
+    pub(crate) states: &'a [Vec<FilamentStates>; 2],
     /// On the panels and azimuths of the wake.
-    pub(super) disk: &'a DiskLoads,
-    pub(super) scales: RotorScales,
+    pub(crate) disk: &'a DiskLoads,
+    pub(crate) scales: RotorScales,
 }
 
 /// Kinds of cells.
@@ -48,7 +48,7 @@ const ROLLED_UP: u8 = 2;
 const DISK: u8 = 3;
 
 /// `wake.pvd`, and in the folder `revolution` a file for each azimuth of the first blade.
-pub(super) fn revolution_files(of: &Revolution<'_>) -> Vec<(String, String)> {
+pub(crate) fn revolution_files(of: &Revolution<'_>) -> Vec<(String, String)> {
     let azimuths = of.wake.settings().azimuths;
     let step_deg = of.wake.settings().step_rad().to_degrees();
     let name = |i: usize| format!("revolution/azimuth_{i:03}.vtp");

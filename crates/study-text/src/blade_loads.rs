@@ -1,6 +1,6 @@
 //! Loads along a blade as a table and as CSV, and hub loads of dissimilar blades as a table.
 
-use crate::output::{table, table_of};
+use report_page::{table, table_of};
 use rotor_base::RotorScales;
 use rotor_response::StationLoads;
 use rotor_study::{MomentLine, StationLine, UnlikeLine};
@@ -16,7 +16,7 @@ fn moments(line: &StationLine) -> [(&'static str, &MomentLine); 3] {
 }
 
 /// The moments at every station as a table: force summation beside the statics of the deflected blade and the curvature.
-pub(crate) fn moments_table(lines: &[StationLine]) -> String {
+pub fn moments_table(lines: &[StationLine]) -> String {
     let number = |value: f64| format!("{value:.2}");
     let per_rev = |moment: &MomentLine, n: usize| {
         let amplitude = moment.force_summation.harmonics.get(n - 1).map(|[c, s]| c.hypot(*s));
@@ -49,7 +49,7 @@ pub(crate) fn moments_table(lines: &[StationLine]) -> String {
 const WIDE_GAP: f64 = 0.05;
 
 /// How far the curvature of the modes kept is from the load, where that is far.
-fn curvature_gap(lines: &[StationLine]) -> Option<String> {
+pub fn curvature_gap(lines: &[StationLine]) -> Option<String> {
     let mut widest = (WIDE_GAP, None);
     for k in 0..3 {
         let means = |line: &StationLine| {
@@ -100,7 +100,7 @@ pub fn blade_loads_csv(loads: &[StationLoads], scales: &RotorScales) -> String {
 }
 
 /// Hub loads with dissimilar blades: amplitudes of all loads, a line for every harmonic.
-pub(crate) fn unlike_table(line: &UnlikeLine) -> String {
+pub fn unlike_table(line: &UnlikeLine) -> String {
     let header = ["per rev", "FX", "FY", "FZ", "MX", "MY", "MZ"];
     table(
         &header,
@@ -109,26 +109,4 @@ pub(crate) fn unlike_table(line: &UnlikeLine) -> String {
             std::iter::once((i + 1).to_string()).chain(amplitudes).collect()
         }),
     )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::{ModalBasis, shipped_case};
-    use crate::progress::Progress;
-    use crate::run::run_case;
-
-    /// Four natural modes bend the root of the lagging blade 14 % less than the load asks; ten completed ones of
-    /// each family do not.
-    #[test]
-    fn a_curvature_far_from_the_load_is_pointed_at() {
-        let mut loaded = shipped_case("crosscheck_s2.ron").unwrap();
-        let natural = run_case(&loaded, &Progress::hidden()).unwrap().result;
-        let text = curvature_gap(&natural.blade_loads).unwrap();
-        assert!(text.contains("lag at 0.000 R is 14 %"), "{text}");
-        loaded.case.structure.modes = [10, 10, 10].into();
-        loaded.case.structure.basis = ModalBasis::Completed;
-        let completed = run_case(&loaded, &Progress::hidden()).unwrap().result;
-        assert_eq!(curvature_gap(&completed.blade_loads), None);
-    }
 }

@@ -1,6 +1,6 @@
 //! Airloads and the motion of the blade tip as CSV, for other programs.
 
-use crate::output::csv_of;
+use report_page::csv_of;
 use rotor_response::{StationAirloads, TipMotion};
 
 /// Airloads at every station and azimuth as CSV text, every digit kept.

@@ -1,0 +1,29 @@
+//! Results of a study of a rotor as text: tables for people, CSV and VTK for programs.
+//!
+//! Floor 5: it is handed values and gives texts back. Who writes or prints them knows the names of files and the terminal.
+//!
+//! | idea | module |
+//! |---|---|
+//! | airloads and the motion of the blade tip | `airloads` |
+//! | loads along a blade, hub loads of dissimilar blades | `blade_loads` |
+//! | rotating modes and the data of a fan plot | `modes` |
+//! | flaps against root pitch | `root_pitch` |
+//! | a free wake: tables, geometry, the revolution for `ParaView` | `wake`, `revolution` |
+
+mod airloads;
+mod blade_loads;
+mod modes;
+mod revolution;
+mod root_pitch;
+mod wake;
+
+pub use airloads::{airloads_csv, tip_csv};
+pub use blade_loads::{blade_loads_csv, curvature_gap, moments_table, unlike_table};
+pub use modes::{fan_csv, modes_text};
+pub use root_pitch::root_pitch_text;
+pub use wake::{WakeFiles, vortices_csv, wake_files, wake_text};
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;
