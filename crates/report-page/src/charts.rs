@@ -112,6 +112,21 @@ pub fn trade_chart([x_title, y_title]: [&str; 2], points: &[[f64; 2]], front: &[
     plot
 }
 
+/// A line through points with its name.
+pub type NamedPoints = (String, Vec<[f64; 2]>);
+
+/// Lines through points over two axes, such as fronts of two costs side by side.
+pub fn fronts_chart([x_title, y_title]: [&str; 2], lines: &[NamedPoints]) -> Plot {
+    let mut plot = Plot::new();
+    for (i, (name, points)) in lines.iter().enumerate() {
+        let [x, y] = [0, 1].map(|k| points.iter().map(|point| point[k]).collect::<Vec<f64>>());
+        let line = chart_line(&x, &y, name, COLOURS[(i + 1) % COLOURS.len()], DashType::Solid);
+        plot.add_trace(line.mode(Mode::LinesMarkers));
+    }
+    plot.set_layout(chart_layout().x_axis(chart_axis(x_title)).y_axis(chart_axis(y_title)));
+    plot
+}
+
 /// A trace of parallel coordinates.
 #[derive(Clone, Serialize)]
 struct Parallel {

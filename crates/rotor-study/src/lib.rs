@@ -11,6 +11,7 @@
 //! | the rotor in trim, its inflow, T of the linearised rotor | `rotor` |
 //! | both as the `Plant` of a controller: outputs, limits, tangents | `plant` |
 //! | control of all sets, forecasts, robustness | `control` |
+//! | what control costs: power, piezo, blade loads, and the fronts of `J` against them | `costs` |
 //! | assumptions changed one at a time | `sensitivity` |
 //! | modes, stability, loads, dissimilar blades | `blade` |
 //! | the free wake of a case | `wake` |
@@ -19,6 +20,7 @@
 mod blade;
 pub mod case;
 mod control;
+mod costs;
 mod error;
 mod flaps;
 mod loads;
@@ -31,6 +33,7 @@ mod wake;
 
 pub use blade::*;
 pub use control::*;
+pub use costs::*;
 pub use error::StudyError;
 pub use flaps::*;
 pub use loads::{HubLoads, Setting, is_still, loads_cost};

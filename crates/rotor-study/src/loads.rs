@@ -1,6 +1,6 @@
 //! Hub loads, their cost `J_Z` and what the figures of a case share.
 
-use crate::case::{Case, ControlValues, LoadScaleChoice};
+use crate::case::{ActuatorValues, Case, ControlValues, LoadScaleChoice};
 use hhc_control::reduction_percent;
 use rotor_base::RotorScales;
 use rotor_response::RotorModel;
@@ -54,6 +54,12 @@ pub struct Setting {
     pub control: ControlValues,
     /// Flap amplitude of the ideal actuator at full-scale voltage, deg.
     pub ideal_amplitude_deg: f64,
+    /// What the case says of the actuator.
+    pub actuator: ActuatorValues,
+    /// Blades.
+    pub blades: usize,
+    /// Arm of the pitch link about the pitch axis, m; none where the case gives none.
+    pub pitch_link_arm_m: Option<f64>,
     /// Units of the rotor.
     pub scales: RotorScales,
     /// `C_Q / sigma` of a torque of `m0 Omega^2 R^3`.
@@ -71,6 +77,9 @@ impl Setting {
             baseline: baseline.parts(),
             control: case.control.clone(),
             ideal_amplitude_deg: case.actuator.ideal_amplitude_deg,
+            actuator: case.actuator.clone(),
+            blades: case.rotor.blades,
+            pitch_link_arm_m: case.rotor.pitch_link_arm_r.map(|arm| arm * case.rotor.radius_m),
             scales: case.scales(),
             torque_coefficient_over_solidity: torque_over_solidity(&case.rotor_model()),
         }

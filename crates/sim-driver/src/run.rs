@@ -13,9 +13,9 @@ use crate::sweep::continued_trim;
 use rotor_response::{StationAirloads, StationLoads, TipMotion};
 use rotor_study::{
     CURVE_AZIMUTHS, ControlStudy, Drives, HubLoads, Setting, StabilityLine, StudyError,
-    TrimmedRotor, VortexComparison, compare_vortices, computed_curves, control_all,
-    each_unlike_blade, forecasts, station_lines, unlike_lines, unlike_warnings, wake_status,
-    wake_warnings,
+    TrimmedRotor, VortexComparison, compare_vortices, computed_curves, control_all, control_costs,
+    each_unlike_blade, forecasts, fronts, station_lines, unlike_lines, unlike_warnings,
+    wake_status, wake_warnings,
 };
 use std::sync::Arc;
 use trim::TrimSolution;
@@ -91,15 +91,18 @@ pub fn run_trimmed(
     let unstable = || stability.warnings(trimmed.trim().flight.advance_ratio);
     let mut powerless = None;
     // without a converged trim nothing is controlled
-    let (studies, forecasts) = if trimmed.wake_diverged() {
-        (Vec::new(), Vec::new())
+    let (studies, forecasts, fronts) = if trimmed.wake_diverged() {
+        (Vec::new(), Vec::new(), Vec::new())
     } else {
         match control_all(&loaded.case, &trimmed, &drives, &|| progress.step()) {
-            Ok(studies) => (studies, forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?),
+            Ok(studies) => {
+                let beforehand = forecasts(&loaded.case, &trimmed, &drives).map_err(failed)?;
+                (studies, beforehand, fronts(&loaded.case, &trimmed, &drives))
+            }
             // the baseline can be had all the same
             Err(error) if error.is_powerless() => {
                 powerless = Some(format!("{error}. The baseline is given without control"));
-                (Vec::new(), Vec::new())
+                (Vec::new(), Vec::new(), Vec::new())
             }
             Err(error) => return Err(failed(error).in_doubt(unstable())),
         }
@@ -127,6 +130,7 @@ pub fn run_trimmed(
     warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(found.flight.advance_ratio)));
     let baseline = HubLoads::from_parts(found.rotor.hub.harmonic(loaded.case.rotor.blades));
     let setting = Setting::of_case(&loaded.case, &baseline);
+    let costs = control_costs(&loaded.case, &trimmed, &drives, &studies).map_err(failed)?;
     let unlike_blades = unlike_lines(&loaded.case, &trimmed, &studies).map_err(failed)?;
     warnings.extend(unlike_warnings(&unlike_blades, &studies));
     // flaps at rest stand first; with every blade alike there is no line
@@ -146,6 +150,8 @@ pub fn run_trimmed(
         each_unlike_blade: each_unlike,
         control: studies.iter().map(|s| ControlRecord::of(s, loaded.case.rotor.blades)).collect(),
         forecasts,
+        costs: (!studies.is_empty()).then_some(costs),
+        fronts,
         warnings,
         ..RunResult::default()
     };

@@ -6,20 +6,26 @@
 //! |---|---|
 //! | airloads and the motion of the blade tip | `airloads` |
 //! | loads along a blade, hub loads of dissimilar blades | `blade_loads` |
+//! | what control costs, and the fronts of `J` | `costs` |
 //! | rotating modes and the data of a fan plot | `modes` |
 //! | flaps against root pitch | `root_pitch` |
+//! | names of sets and flaps | `names` |
 //! | a free wake: tables, geometry, the revolution for `ParaView` | `wake`, `revolution` |
 
 mod airloads;
 mod blade_loads;
+mod costs;
 mod modes;
+mod names;
 mod revolution;
 mod root_pitch;
 mod wake;
 
 pub use airloads::{airloads_csv, tip_csv};
 pub use blade_loads::{blade_loads_csv, curvature_gap, moments_table, unlike_table};
+pub use costs::{cost_sections, costs_csv, front_axis, front_sections, fronts_csv};
 pub use modes::{fan_csv, modes_text};
+pub use names::{flap_name, set_name};
 pub use root_pitch::root_pitch_text;
 pub use wake::{WakeFiles, vortices_csv, wake_files, wake_text};
 

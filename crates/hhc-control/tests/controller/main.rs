@@ -5,6 +5,7 @@
 mod bending;
 mod constrained;
 mod failures;
+mod front;
 mod hysteresis;
 mod learning;
 mod linear;

@@ -2,6 +2,7 @@
 
 use crate::loads::wrenches::added;
 use crate::{ResponseError, RotorSolution};
+use nalgebra::DMatrix;
 use rotor_base::HarmonicSeries;
 use rotor_fem::Orbit;
 
@@ -19,6 +20,8 @@ pub struct WakeDrive {
 pub struct StateChange {
     /// Modal motion.
     pub(crate) orbit: Orbit,
+    /// Modal accelerations that satisfy the equations of motion at every point.
+    pub(crate) accelerations: DMatrix<f64>,
     /// Parameters of the inflow, tip speed.
     pub(crate) inflow: Vec<f64>,
 }
@@ -54,12 +57,14 @@ impl StateChange {
     #[must_use]
     pub fn zero(&self) -> Self {
         let nodal = self.orbit.nodal.map(|_| 0.0);
-        Self { orbit: Orbit { nodal }, inflow: vec![0.0; self.inflow.len()] }
+        let accelerations = self.accelerations.map(|_| 0.0);
+        Self { orbit: Orbit { nodal }, accelerations, inflow: vec![0.0; self.inflow.len()] }
     }
 
     /// `self += factor other`.
     pub fn add(&mut self, other: &Self, factor: f64) {
         self.orbit.nodal.zip_apply(&other.orbit.nodal, |value, part| *value += factor * part);
+        self.accelerations.zip_apply(&other.accelerations, |value, part| *value += factor * part);
         add(&mut self.inflow, factor, &other.inflow);
     }
 }
@@ -75,5 +80,16 @@ impl RotorSolution {
         add(&mut inflow, 1.0, &change.inflow);
         self.inflow = self.inflow.with_parameters(&inflow)?;
         Ok(self)
+    }
+
+    /// The response as the linearised rotor has it after a change: orbit, accelerations and inflow are moved, as the loads of
+    /// the blade ask for ([`crate::RotorSolver::station_loads`]). Hub loads and hinge moments stay those of before.
+    ///
+    /// # Errors
+    /// [`ResponseError::Wake`] for another number of inflow parameters.
+    pub fn moved_blade(self, change: &StateChange) -> Result<Self, ResponseError> {
+        let mut moved = self.moved_start(change)?;
+        moved.accelerations += &change.accelerations;
+        Ok(moved)
     }
 }

@@ -393,12 +393,13 @@ impl<'a> Base<'a> {
         motion: &Orbit,
         force: &DMatrix<f64>,
     ) -> Result<Answer, ResponseError> {
-        let state = StateChange { orbit: motion.clone(), inflow: change.inflow.clone() };
+        let (orbit, inflow) = (motion.clone(), change.inflow.clone());
         let mut motion = motion.sample(&self.solver.time);
         let mass = &self.solver.rotor.mass;
         if let Some(lacking) = orbits.lacking_accelerations(&(mass * &motion.qdd + force)) {
             motion.qdd += lacking;
         }
+        let state = StateChange { orbit, accelerations: motion.qdd.clone(), inflow };
         // the points were made for `change.size`; the motion goes with it
         motion.q = &self.settled.q + motion.q * change.size;
         motion.qd = &self.settled.qd + motion.qd * change.size;
@@ -436,7 +437,8 @@ fn answer(
             modal: solver.modal_harmonics(samples),
         });
     }
-    let state = StateChange { orbit: Orbit::zero(time, 0), inflow: Vec::new() };
+    let (orbit, accelerations) = (Orbit::zero(time, 0), DMatrix::zeros(0, 0));
+    let state = StateChange { orbit, accelerations, inflow: Vec::new() };
     Ok(Answer { hub, hinge, drive, state, wanted })
 }
 

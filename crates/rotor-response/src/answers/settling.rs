@@ -63,6 +63,7 @@ impl Answer {
             drive.scale(factor);
         }
         self.state.orbit.nodal *= factor;
+        self.state.accelerations *= factor;
         self.state.inflow.iter_mut().for_each(|value| *value *= factor);
         for value in &mut self.wanted {
             *value *= factor;

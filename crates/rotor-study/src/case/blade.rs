@@ -72,6 +72,10 @@ section! {
         /// link with control system, 0.001 or stiffer. A free lag hinge needs a `root_offset_r`.
         #[serde(skip_serializing_if = "is_default")]
         pub root: RootSupport = RootSupport::default(), Any, "", "";
+        /// Arm of the pitch link about the pitch axis: what it holds is the torsion at the root over this. Left out, the
+        /// torsion is given.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub pitch_link_arm_r: Option<f64> = None, Within(1e-4, 0.2), "R", "0.02 R is usual; leave it out where it is not known";
         /// Mass centre ahead of the elastic axis; `couplings: Moderate` only.
         #[serde(skip_serializing_if = "is_default")]
         pub mass_centre_r: f64 = 0.0, Within(-0.05, 0.05), "R",

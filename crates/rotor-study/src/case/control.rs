@@ -171,6 +171,19 @@ section! {
             "the paper's figures use 5 rev/s, its rotor turns 6.383 rev/s";
         /// Voltages the actuator may see, lower limit first.
         pub range_volt as "range_V": (f64, f64) = (-20.0, 150.0), Rule("lower, upper limit"), "V", "";
+        /// Capacitance of the piezo that drives one flap of one blade, small signal, of its data sheet; several stacks in
+        /// parallel add up. Left out, no electrical power is given.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub capacitance_microfarad as "capacitance_uF": Option<f64> = None, Within(1e-6, 1e6), "uF",
+            "small signal, of the data sheet of the stack; leave it out where it is not known";
+        /// Blocked force of that actuator over the whole range of voltages, of its data sheet; with `free_stroke_um`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub blocked_force_newton as "blocked_force_N": Option<f64> = None, Within(1e-3, 1e6), "N",
+            "of the data sheet of the actuator; leave it out where it is not known";
+        /// Free stroke of that actuator over the whole range of voltages, of its data sheet; with `blocked_force_N`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub free_stroke_um: Option<f64> = None, Within(1e-3, 1e5), "um",
+            "of the data sheet of the actuator; leave it out where it is not known";
     }
 }
 

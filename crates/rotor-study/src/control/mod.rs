@@ -17,6 +17,7 @@ pub use robustness::{
 pub use root_pitch::{Actuation, MotionHarmonic, RootPitchComparison, compare_root_pitch};
 pub(crate) use run::ideal_control;
 pub use run::{control_all, control_set};
+pub(crate) use set::ControlSet;
 pub use set::{control_status, least_effort};
 pub use study::ControlStudy;
 

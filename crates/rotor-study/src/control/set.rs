@@ -15,17 +15,17 @@ use hhc_control::{
 use std::sync::Arc;
 
 /// One set of harmonics under control: the rotor, its drives and how far they reach.
-pub(super) struct ControlSet<'a> {
-    pub(super) case: &'a Case,
-    pub(super) rotor: &'a TrimmedRotor,
-    pub(super) drives: &'a Drives,
-    pub(super) harmonics: &'a [usize],
+pub(crate) struct ControlSet<'a> {
+    pub(crate) case: &'a Case,
+    pub(crate) rotor: &'a TrimmedRotor,
+    pub(crate) drives: &'a Drives,
+    pub(crate) harmonics: &'a [usize],
     /// Full-scale voltage and stroke limit of every harmonic.
-    pub(super) limits: Vec<FullScale>,
+    pub(crate) limits: Vec<FullScale>,
 }
 
 impl<'a> ControlSet<'a> {
-    pub(super) fn new(
+    pub(crate) fn new(
         case: &'a Case,
         rotor: &'a TrimmedRotor,
         drives: &'a Drives,
@@ -40,7 +40,7 @@ impl<'a> ControlSet<'a> {
 }
 
 impl ControlSet<'_> {
-    pub(super) fn failed(
+    pub(crate) fn failed(
         &self,
         actuator: ControlActuator,
         source: RunError<PlantError>,
@@ -52,7 +52,7 @@ impl ControlSet<'_> {
         }
     }
 
-    pub(super) fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
+    pub(crate) fn plant(&self, actuator: ControlActuator) -> Result<RotorPlant, StudyError> {
         let mut full_scale = self.limits.clone();
         let drive = if actuator == ControlActuator::Ideal {
             let amplitude = self.case.control.amplitude_volt;
@@ -76,7 +76,7 @@ impl ControlSet<'_> {
     }
 
     /// Weight of each load: those of the case, over the squared baseline amplitude if it asks for that.
-    pub(super) fn load_weights(&self) -> [f64; 6] {
+    pub(crate) fn load_weights(&self) -> [f64; 6] {
         let baseline = self.rotor.trim().rotor.hub.harmonic(self.case.rotor.blades);
         Setting::of_case(self.case, &HubLoads::from_parts(baseline)).load_weights()
     }

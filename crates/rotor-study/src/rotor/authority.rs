@@ -109,7 +109,31 @@ impl FlapAuthority {
         about: &RotorSolution,
         flap_angles_rad: &[HarmonicSeries],
     ) -> Result<RotorSolution, ResponseError> {
-        let mut start = about.clone();
+        let start = about.clone();
+        match self.state_change(flap_angles_rad) {
+            Some(change) => start.moved_start(&change),
+            None => Ok(start),
+        }
+    }
+
+    /// The response to small flap motions, rad, about that of which is linearised, as the loads of the blade ask for it.
+    ///
+    /// # Errors
+    /// As [`RotorSolution::moved_blade`].
+    pub(crate) fn moved_blade(
+        &self,
+        about: &RotorSolution,
+        flap_angles_rad: &[HarmonicSeries],
+    ) -> Result<RotorSolution, ResponseError> {
+        let moved = about.clone();
+        match self.state_change(flap_angles_rad) {
+            Some(change) => moved.moved_blade(&change),
+            None => Ok(moved),
+        }
+    }
+
+    /// Change of orbit and inflow with flap motions, rad; none of motions that are zero or not kept.
+    fn state_change(&self, flap_angles_rad: &[HarmonicSeries]) -> Option<StateChange> {
         let mut whole: Option<StateChange> = None;
         for (columns, angle) in self.states.iter().zip(flap_angles_rad) {
             for (part, change) in coefficients(angle, columns.len() / 2).zip(columns) {
@@ -118,10 +142,7 @@ impl FlapAuthority {
                 whole.add(change, part.to_degrees());
             }
         }
-        if let Some(whole) = &whole {
-            start = start.moved_start(whole)?;
-        }
-        Ok(start)
+        whole
     }
 
     /// Change of the hinge moment of every flap for a small motion of one flap, deg; `m0 Omega^2 R^3`.

@@ -8,6 +8,7 @@ mod inflow;
 mod once;
 mod reconverged;
 mod resonance;
+mod root_moments;
 mod root_pitch;
 mod trimmed;
 

@@ -1,5 +1,6 @@
 //! The rotor with driven flaps as a plant.
 
+mod costs;
 mod coupled_plant;
 mod power_weight;
 mod root_pitch;

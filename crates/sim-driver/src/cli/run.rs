@@ -20,7 +20,7 @@ use crate::sweep::{
 use crate::terminal::{details, summary};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::Path;
-use study_text::{airloads_csv, blade_loads_csv, tip_csv, vortices_csv};
+use study_text::{airloads_csv, blade_loads_csv, costs_csv, fronts_csv, tip_csv, vortices_csv};
 use trim::{TrimSolution, WakeTrim};
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
@@ -142,6 +142,12 @@ fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
     }
     if !stored.result.robustness.is_empty() {
         write("robustness.csv", &robustness_csv(&stored.result.robustness))?;
+    }
+    if !figures.costs.is_empty() {
+        write("costs.csv", &costs_csv(&figures.costs))?;
+    }
+    if figures.fronts.iter().any(|line| !line.points.is_empty()) {
+        write("fronts.csv", &fronts_csv(&figures.fronts))?;
     }
     if stored.result.measured.is_some() {
         write("measured.csv", &measured_csv(figures))?;

@@ -1,14 +1,19 @@
 //! The charts, as plotly plots without colours of background and text: the page sets those.
 
 use super::tables::HISTORY_AZIMUTHS;
-use crate::results::{ControlLine, ControlRecord, LoopRecord, MeasuredLine, SeriesLine, flap_name};
+use crate::results::{
+    ControlLine, ControlRecord, LoopRecord, MeasuredLine, SeriesLine, flap_name, set_name,
+};
 use plotly::common::{DashType, Marker, Mode};
 use plotly::layout::{AngularAxis, BarMode, LayoutPolar, PolarDirection, RadialAxis};
 use plotly::{Bar, Plot, Trace};
-use report_page::{COLOURS, chart_axis, chart_layout, chart_line, curve_chart};
+use report_page::{
+    COLOURS, NamedPoints, chart_axis, chart_layout, chart_line, curve_chart, fronts_chart,
+};
 use rotor_base::uniform_azimuths_rad;
-use rotor_study::{DiskLoads, HubLoads, MeasuredData};
+use rotor_study::{DiskLoads, FrontAgainst, FrontLine, HubLoads, MeasuredData};
 use serde::Serialize;
+use study_text::front_axis;
 
 /// Flap angle against voltage: measured, dynamic model, static model.
 pub(super) fn loop_chart(chart: &LoopRecord) -> Plot {
@@ -102,6 +107,24 @@ pub(super) fn load_chart(before: &[f64; 6], lines: &[ControlLine]) -> Plot {
             .y_axis(chart_axis("amplitude, 1e-4")),
     );
     plot
+}
+
+/// `J / J0` against each cost: a line for every set of harmonics; none of a cost without a front.
+pub(super) fn front_charts(fronts: &[FrontLine]) -> Vec<(String, Plot)> {
+    let of = |against: FrontAgainst| {
+        let lines =
+            fronts.iter().filter(|line| line.against == against && line.useful().count() > 0);
+        let curves: Vec<NamedPoints> = lines
+            .map(|line| {
+                let points = line.useful().map(|state| [state.second, state.cost_ratio]);
+                (format!("{}/rev", set_name(&line.harmonics)), points.collect())
+            })
+            .collect();
+        let title = format!("J against {}", against.name());
+        let chart = || fronts_chart([&front_axis(against), "J/J0"], &curves);
+        (!curves.is_empty()).then(|| (title, chart()))
+    };
+    FrontAgainst::ALL.into_iter().filter_map(of).collect()
 }
 
 /// Sectors of a disk with a colour for a value each: plotly's `barpolar`, which its crate does not have.

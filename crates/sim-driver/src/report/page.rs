@@ -1,6 +1,8 @@
 //! The page around the charts.
 
-use super::charts::{azimuth_chart, disk_chart, load_chart, loop_chart, measured_chart};
+use super::charts::{
+    azimuth_chart, disk_chart, front_charts, load_chart, loop_chart, measured_chart,
+};
 use super::{StudyReport, assumptions, state_lines};
 use crate::results::{BenchPart, by_set, curve_name, set_name};
 use bench_study::stored::StoredFit;
@@ -8,6 +10,7 @@ use maud::{Markup, PreEscaped, html};
 use preisach_dyn::identify::RecordUse;
 use report_page::{Charts, Section, page};
 use rotor_study::DiskLoads;
+use study_text::{cost_sections, front_sections};
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
 pub fn report_html(report: &StudyReport<'_>) -> String {
@@ -74,6 +77,19 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
                 }
             }
         }
+        @for section in cost_sections(&figures.costs) { (section) }
+        @let fronts = front_charts(&figures.fronts);
+        @if !fronts.is_empty() {
+            section {
+                h2 { "What a fall of J costs" }
+                p { "Least J for a given cost, every actuator as its gain at full scale, rotor and blade linearised about "
+                    "the trim. Each line ends at the least J; it begins at the least cost, or where J is that without control." }
+                div.grid {
+                    @for (title, chart) in &fronts { (charts.figure("chart", title, "", chart)) }
+                }
+            }
+        }
+        @for section in front_sections(&figures.fronts) { (section.folded()) }
         @if let Some(disk) = &stored.result.disk { (disk_maps(&mut charts, disk)) }
         @if !bench.loops.is_empty() {
             section {

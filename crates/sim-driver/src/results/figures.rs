@@ -14,9 +14,10 @@ use hhc_control::{Cost, FeedbackLaw, TMatrix, lag_deg};
 use rotor_base::RotorScales;
 use rotor_response::HingeMoment;
 use rotor_study::{
-    CurveComparison, Forecast, HingePower, MeanLoads, PowerOutputs, SensitivityLine, Setting,
-    StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine, VortexComparison, WakeStatus,
-    compare_curves, loads_cost, output_weights, sensitivity_lines,
+    ControlCost, CostedSet, CurveComparison, Forecast, FrontLine, HingePower, MeanLoads,
+    PowerOutputs, SensitivityLine, Setting, StabilityLine, StationLine, UnlikeBladeLine,
+    UnlikeLine, VortexComparison, WakeStatus, compare_curves, loads_cost, output_weights,
+    sensitivity_lines,
 };
 use serde::Serialize;
 
@@ -55,6 +56,12 @@ pub struct Figures {
     /// What the linearised rotor says beforehand, one entry per set.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub forecasts: Vec<Forecast>,
+    /// What every control costs: power, piezo, blade loads.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub costs: Vec<ControlCost>,
+    /// What a fall of `J` costs in the linearised rotor.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fronts: Vec<FrontLine>,
     /// The reductions with one assumption changed at a time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub sensitivity: Vec<SensitivityLine>,
@@ -174,7 +181,13 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
     let warnings =
         unique(result.warnings.iter().cloned().chain(control_warnings(&control, setting)));
     let measured = result.measured.iter().flat_map(|part| &part.curves);
+    let costs = result.control.iter().zip(&control).enumerate();
+    let costs = costs.filter_map(|(k, (record, line))| {
+        result.costs.as_ref()?.figures(k, costed(record, line), setting)
+    });
     Figures {
+        costs: costs.collect(),
+        fronts: result.fronts.clone(),
         trim: result.trim,
         residuals: result.residuals,
         wake: result.wake,
@@ -191,6 +204,17 @@ pub fn figures(result: &RunResult, setting: &Setting) -> Figures {
         unlike_blades: result.unlike_blades.clone(),
         each_unlike_blade: result.each_unlike_blade.clone(),
         warnings,
+    }
+}
+
+/// A controlled set as its costs are asked for.
+fn costed<'a>(record: &'a ControlRecord, line: &ControlLine) -> CostedSet<'a> {
+    let of = |flap: &'a FlapRecord| (hinge_of(flap), &flap.voltage_volt.0, &flap.flap_deg.0);
+    CostedSet {
+        harmonics: &record.head.harmonics,
+        actuator: &record.head.actuator,
+        cost_ratio: line.j_after / line.j_before,
+        flaps: record.end.flaps.iter().map(of).collect(),
     }
 }
 
@@ -319,12 +343,15 @@ fn power_cost(record: &ControlRecord) -> f64 {
     PowerOutputs::new(record.end.power_gains_per_volt.clone()).cost(&control_volt(record))
 }
 
-fn hinge_power(flap: &FlapRecord, scales: &RotorScales) -> HingePower {
-    let hinge = HingeMoment {
+fn hinge_of(flap: &FlapRecord) -> HingeMoment {
+    HingeMoment {
         aerodynamic: flap.aerodynamic_moment.0.clone(),
         inertial: flap.inertial_moment.0.clone(),
-    };
-    HingePower::new(&hinge, &flap.flap_deg.0, scales)
+    }
+}
+
+fn hinge_power(flap: &FlapRecord, scales: &RotorScales) -> HingePower {
+    HingePower::new(&hinge_of(flap), &flap.flap_deg.0, scales)
 }
 
 /// Largest error of a wanted flap harmonic over the largest wanted one of the flap.

@@ -21,10 +21,11 @@ pub(crate) use measured::{curve_name, same_station};
 pub use stored::{RESULT_FILE, StoredResult};
 
 use rotor_study::{
-    DiskLoads, ForecastLine, HubLoads, MarginLine, RobustnessCell, Sensitivity, StabilityLine,
-    StationLine, UnlikeBladeLine, UnlikeLine, WakeStatus,
+    CostRecords, DiskLoads, ForecastLine, FrontLine, HubLoads, MarginLine, RobustnessCell,
+    Sensitivity, StabilityLine, StationLine, UnlikeBladeLine, UnlikeLine, WakeStatus,
 };
 use serde::{Deserialize, Serialize};
+pub use study_text::{flap_name, set_name};
 
 /// What a run found, each number once. Loads nondimensional (`m0 Omega^2 R^2`, `m0 Omega^2 R^3`), a harmonic as
 /// `[cosine, sine]`.
@@ -67,6 +68,12 @@ pub struct RunResult {
     /// What the linearised rotor says beforehand, one entry per set; empty without an identified actuator.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub forecasts: Vec<ForecastLine>,
+    /// What the costs of every control are computed from; none without control.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub costs: Option<CostRecords>,
+    /// Fronts of `J` against power and loads of the blade; empty without control.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub fronts: Vec<FrontLine>,
     /// Loads with one assumption changed at a time; empty unless asked for.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sensitivity: Vec<Sensitivity>,
@@ -136,25 +143,10 @@ pub struct Baseline {
     pub hub_nb_per_rev: HubLoads,
 }
 
-/// A set of harmonics as a title: `2` or `2+3`.
-pub fn set_name(harmonics: &[usize]) -> String {
-    let all: Vec<String> = harmonics.iter().map(usize::to_string).collect();
-    all.join("+")
-}
-
 /// The controls of each set of harmonics, which stand one after another.
 pub fn by_set(control: &[ControlLine]) -> impl Iterator<Item = (&[usize], &[ControlLine])> {
     let sets = control.chunk_by(|a, b| a.head.harmonics == b.head.harmonics);
     sets.map(|lines| (lines[0].head.harmonics.as_slice(), lines))
-}
-
-/// Name of a flap, counted from 0 at the root.
-pub fn flap_name(index: usize) -> String {
-    match index {
-        0 => "inboard".to_owned(),
-        1 => "outboard".to_owned(),
-        more => format!("flap {}", more + 1),
-    }
 }
 
 #[cfg(test)]

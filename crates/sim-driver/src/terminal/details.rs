@@ -4,7 +4,7 @@ use crate::output::{Sheet, table_of};
 use crate::report::state_lines;
 use crate::results::{ControlLine, Figures, flap_name, set_name};
 use rotor_study::{Forecast, HubLoads, UnlikeBladeLine, is_still};
-use study_text::{moments_table, unlike_table};
+use study_text::{cost_sections, front_sections, moments_table, unlike_table};
 
 /// Every table of a result.
 pub(crate) fn details(figures: &Figures) -> String {
@@ -55,6 +55,9 @@ pub(crate) fn details(figures: &Figures) -> String {
     if !figures.forecasts.is_empty() {
         sheet.line("\nWhat the linearised rotor says beforehand, ideal actuator");
         sheet.block(&forecast_table(&figures.forecasts, &share));
+    }
+    for section in cost_sections(&figures.costs).iter().chain(&front_sections(&figures.fronts)) {
+        sheet.block(&section.to_string());
     }
     for line in &figures.unlike_blades {
         sheet.line(format_args!(
