@@ -169,7 +169,7 @@ pub(crate) fn unguided<'a>(
         path,
         model,
         actuator_rev_hz: case.actuator.bench_rev_hz,
-        bias_volt: case.control.bias_volt,
+        bias: case.control.drive_bias(),
         rotor_rev_hz: case.rotor.omega_rpm / 60.0,
         advance_ratio: ramp(speeds, values.ramp_at_s, values.ramp_s),
         thrust_share: values

@@ -4,12 +4,13 @@ use crate::FlightError;
 use hhc_control::{ControlLayout, HarmonicAnalyser};
 use preisach_dyn::{ActuatorMemory, ActuatorModel, StartState, Stepper};
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_study::Bias;
 use std::f64::consts::TAU;
 
 /// Samples of a revolution, and harmonics of the motion that the rotor feels.
 const SAMPLES: usize = 128;
 pub(crate) const HARMONICS: u32 = 12;
-/// Change of the bias for a mean flap angle, V/deg, once a revolution: a few revolutions to centre.
+/// Change of a bias that centres the flap for a mean flap angle, V/deg, once a revolution: a few revolutions to centre.
 const BIAS_VOLT_PER_DEG: f64 = 2.0;
 
 /// The actuators of all flaps, each with its own memory.
@@ -20,6 +21,8 @@ pub struct FlapMarch<'a> {
     layout: ControlLayout,
     memories: Vec<ActuatorMemory>,
     bias_volt: Vec<f64>,
+    /// Change of the bias for a mean flap angle, V/deg, once a revolution.
+    bias_gain: f64,
     analysers: Vec<HarmonicAnalyser>,
     /// Cosine and sine of every controlled harmonic at every sample.
     waves: Vec<f64>,
@@ -37,7 +40,8 @@ pub struct FlapTurn {
 }
 
 impl<'a> FlapMarch<'a> {
-    /// Flaps at rest about a bias, V; `rev_hz` is the revolutions per second of the actuators' time.
+    /// Flaps at rest about a bias; `rev_hz` is the revolutions per second of the actuators' time. A bias that is centred is
+    /// led by the mean flap angle, one that is held stays.
     ///
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
@@ -45,8 +49,9 @@ impl<'a> FlapMarch<'a> {
         model: &'a ActuatorModel,
         layout: &ControlLayout,
         rev_hz: f64,
-        bias_volt: f64,
+        bias: Bias,
     ) -> Result<Self, FlightError> {
+        let bias_volt = bias.volt();
         let located = |source| FlightError::Actuator { flap: 0, source };
         let stepper = model.stepper(1.0 / (rev_hz * SAMPLES as f64)).map_err(located)?;
         let memory = model.start(bias_volt, StartState::Rest).map_err(located)?;
@@ -65,6 +70,7 @@ impl<'a> FlapMarch<'a> {
             layout: layout.clone(),
             memories: vec![memory; layout.flaps()],
             bias_volt: vec![bias_volt; layout.flaps()],
+            bias_gain: if bias.is_fixed() { 0.0 } else { BIAS_VOLT_PER_DEG },
             analysers: vec![analyser; layout.flaps()],
             waves,
         })
@@ -100,7 +106,7 @@ impl<'a> FlapMarch<'a> {
                         pairs.map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect();
                 }
             }
-            self.bias_volt[flap] = (self.bias_volt[flap] - BIAS_VOLT_PER_DEG * motion.mean)
+            self.bias_volt[flap] = (self.bias_volt[flap] - self.bias_gain * motion.mean)
                 .clamp(range.lowest_volt(), range.highest_volt());
             let held_share = held as f64 / SAMPLES as f64;
             turns.push(FlapTurn { flap_deg: motion, volt: extremes, held_share });

@@ -5,6 +5,7 @@ use hhc_control::{ControlLayout, RelaxedSettings, TMatrix};
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_study::Bias;
 
 /// Revolutions that settle flaps and bias before T is identified.
 const SETTLED_REV: usize = 12;
@@ -33,8 +34,8 @@ pub struct Flight<'a> {
     pub layout: ControlLayout,
     /// Revolutions per second of the actuators' time.
     pub actuator_rev_hz: f64,
-    /// Bias at the start, V.
-    pub bias_volt: f64,
+    /// Bias: that of the start, led by the mean flap angle, or one that is held.
+    pub bias: Bias,
     /// Revolutions per second of the rotor.
     pub rotor_rev_hz: f64,
     /// Advance ratio against time (s), linear in between and held beyond the ends.
@@ -85,7 +86,7 @@ impl Flight<'_> {
     }
 
     pub(crate) fn flaps(&self) -> Result<FlapMarch<'_>, FlightError> {
-        FlapMarch::new(self.model, &self.layout, self.actuator_rev_hz, self.bias_volt)
+        FlapMarch::new(self.model, &self.layout, self.actuator_rev_hz, self.bias)
     }
 
     /// Standard deviation of a load in one revolution, from the loads without control at the start.

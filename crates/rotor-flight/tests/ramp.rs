@@ -7,6 +7,7 @@ use common::actuator;
 use hhc_control::{ControlLayout, EstimatorSettings, RelaxedSettings};
 use preisach_dyn::ActuatorModel;
 use rotor_flight::{FlapFailure, Flight, FlightPoint, Guidance, RotorPath, fly};
+use rotor_study::Bias;
 use rotor_study::case::Case;
 
 const SEEDS: u64 = 20;
@@ -25,7 +26,7 @@ fn flight<'a>(path: &'a RotorPath, model: &'a ActuatorModel) -> Flight<'a> {
         model,
         layout,
         actuator_rev_hz: 5.0,
-        bias_volt: 65.0,
+        bias: Bias::Centred { guess_volt: 65.0 },
         rotor_rev_hz: 383.0 / 60.0,
         advance_ratio: vec![(0.0, 0.15), (10.0, 0.15), (30.0, 0.30)],
         thrust_share: vec![],

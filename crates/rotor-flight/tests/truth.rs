@@ -9,7 +9,7 @@ use preisach_dyn::ActuatorModel;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_flight::{FlapMarch, Flight, FlightState, Guidance, RotorPath, fly};
 use rotor_study::case::Case;
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled};
+use rotor_study::{Bias, HUB_OUTPUTS, TrimmedRotor, scaled};
 
 /// The knots of a flight section by default: 0.15 to 0.30 in ten parts.
 const PARTS: u32 = 10;
@@ -40,7 +40,7 @@ fn flown(path: &RotorPath, model: &ActuatorModel, advance_ratio: f64) -> Vec<Vec
         model,
         layout: layout.clone(),
         actuator_rev_hz: 5.0,
-        bias_volt: 65.0,
+        bias: Bias::Centred { guess_volt: 65.0 },
         rotor_rev_hz: ROTOR_REV_HZ,
         advance_ratio: vec![(0.0, advance_ratio)],
         thrust_share: vec![],
@@ -53,7 +53,8 @@ fn flown(path: &RotorPath, model: &ActuatorModel, advance_ratio: f64) -> Vec<Vec
         settings,
     };
     let points = fly(&flight, &Guidance::Scheduled).unwrap();
-    let mut flaps = FlapMarch::new(model, &layout, 5.0, 65.0).unwrap();
+    let mut flaps =
+        FlapMarch::new(model, &layout, 5.0, Bias::Centred { guess_volt: 65.0 }).unwrap();
     let rev = |control_volt: &Vec<f64>| {
         let turns = flaps.revolve(control_volt).unwrap();
         turns.into_iter().map(|turn| turn.flap_deg).collect()

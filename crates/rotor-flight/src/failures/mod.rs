@@ -229,7 +229,7 @@ impl<'a> Study<'a> {
             (0..count).max_by(|a, b| of(*a).total_cmp(&of(*b))).unwrap_or_default()
         };
         let (low, high) = case.actuator.range_volt;
-        let bias = case.control.bias_volt;
+        let bias = case.control.drive_bias().volt();
         Ok(Self {
             flap: largest(blades.flaps(), &say),
             load: largest(6, &part),

@@ -45,8 +45,9 @@ impl Actuators {
     ) -> Result<Self, StudyError> {
         let (low, high) = case.actuator.range_volt;
         let range_volt = VoltageRange::new(low, high).map_err(StudyError::Range)?;
-        let (rev_hz, bias_volt) = (case.actuator.bench_rev_hz, case.control.bias_volt);
-        let with = |model| FlapDrive::Model { model, range_volt, rev_hz, bias_volt };
+        let (rev_hz, bias) = (case.actuator.bench_rev_hz, case.control.drive_bias());
+        let bias_volt = bias.volt();
+        let with = |model| FlapDrive::Model { model, range_volt, rev_hz, bias };
         let gain = case.actuator.ideal_amplitude_deg / case.control.amplitude_volt;
         let ideal = FlapDrive::Ideal { gain_deg_per_volt: gain, bias_volt, range_volt };
         let hysteretic = hysteretic.filter(|_| model.is_none()).map(with);

@@ -1,6 +1,7 @@
 //! The sections of a case: trim, actuator and control.
 
 use super::field::{Value, is_default, section, values, variant_names};
+use crate::flaps::Bias;
 use serde::{Deserialize, Serialize};
 
 /// What the rotor is trimmed to.
@@ -226,6 +227,16 @@ pub enum StrokeChoice {
     },
 }
 
+/// Bias voltage of the actuators.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub enum BiasChoice {
+    /// Solved so that the mean flap angle vanishes.
+    #[default]
+    Centred,
+    /// Held at this voltage, V: the mean flap angle follows.
+    Fixed(f64),
+}
+
 /// Weight of the control effort, `W_u = rho I`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -281,6 +292,7 @@ pub enum LoadScaleChoice {
 values!(
     ControlActuator,
     StrokeChoice,
+    BiasChoice,
     EffortChoice,
     ControllerChoice,
     TInflowChoice,
@@ -326,6 +338,10 @@ section! {
             ControlActuator::Ignored,
             ControlActuator::Hysteretic,
         ], Any, "", "";
+        /// Bias of the real actuator. `Centred`: solved so that the mean flap angle vanishes. `Fixed(65)`: held by the
+        /// amplifier at this voltage, V, for the ideal actuator too; the mean flap angle follows, `bias_V` is left out.
+        #[serde(skip_serializing_if = "is_default")]
+        pub bias: BiasChoice = BiasChoice::Centred, Any, "", "";
         /// Bias of the ideal actuator, and where the search for that of the real one starts, which centres its flap; bias and amplitude stay inside `actuator.range_V`.
         pub bias_volt as "bias_V": f64 = 65.0, Rule("inside `range_V`"), "V", "";
         /// Full-scale voltage: amplitude.
@@ -366,5 +382,15 @@ section! {
         pub max_steps: usize = 40, Count(1, 10_000), "", "40 is usual";
         /// Relative change of the voltages at which the control has converged.
         pub step_tolerance: f64 = 1e-4, Within(1e-12, 0.1), "", "1e-4 is usual";
+    }
+}
+
+impl ControlValues {
+    /// How the bias of the actuators is set.
+    pub fn drive_bias(&self) -> Bias {
+        match self.bias {
+            BiasChoice::Centred => Bias::Centred { guess_volt: self.bias_volt },
+            BiasChoice::Fixed(volt) => Bias::Fixed { volt },
+        }
     }
 }

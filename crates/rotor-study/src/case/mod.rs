@@ -33,9 +33,10 @@ pub use blade::{
     RootPitchBy, RotorValues, times,
 };
 pub use control::{
-    ActuatorChoice, ActuatorPath, ActuatorValues, BenchFolder, ControlActuator, ControlValues,
-    ControllerChoice, EffortChoice, HorizontalTailValues, LoadScaleChoice, LoadWeights,
-    PrescribedTrim, PropulsiveTrim, StrokeChoice, TInflowChoice, TrimValues, WindTunnelTrim,
+    ActuatorChoice, ActuatorPath, ActuatorValues, BenchFolder, BiasChoice, ControlActuator,
+    ControlValues, ControllerChoice, EffortChoice, HorizontalTailValues, LoadScaleChoice,
+    LoadWeights, PrescribedTrim, PropulsiveTrim, StrokeChoice, TInflowChoice, TrimValues,
+    WindTunnelTrim,
 };
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};

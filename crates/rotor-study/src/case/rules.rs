@@ -3,14 +3,16 @@
 use super::checker::Checker;
 use super::rules_blade::check_blade;
 use super::{
-    ActuatorChoice, AirfoilStation, AttachedFlowModel, Case, CaseFault, CaseFaults,
-    CompressibilityChoice, ControlActuator, ControllerChoice, EffortChoice, FlightValues,
-    FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice, WakeMethod, WakeSymmetry,
+    ActuatorChoice, AirfoilStation, AttachedFlowModel, BiasChoice, Case, CaseFault, CaseFaults,
+    CompressibilityChoice, ControlActuator, ControlValues, ControllerChoice, EffortChoice,
+    FlightValues, FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice, WakeMethod,
+    WakeSymmetry,
 };
 
 // rules between fields
 const INCOMPRESSIBLE: &str = "Incompressible holds at Mach 0 only; set aerodynamics.compressibility: None, or choose Calibrated or HariharanLeishman";
 const NEEDS_ACTUATOR: &str = "Ignored and Hysteretic need an identified actuator; set actuator.model to Bench(...) or File(...)";
+const INVERSE_SETS_BIAS: &str = "Inverse gives the whole voltage, bias included, which bias: Fixed holds; write bias: Centred, or leave Inverse out";
 const NEEDS_LIMITS: &str =
     "a limit of the power is kept by the cone program alone; set control.effort to Limits";
 const NEEDS_CONSTANT_T: &str = "a weight tuned to the stroke (effort: MeetStroke) is a root find over whole loops with one T; with a T that is learnt their ends scatter; write controller: Global, or effort: Limits, which keeps the stroke of each flap exactly";
@@ -177,14 +179,32 @@ fn check_voltage(check: &mut Checker, case: &Case) {
         );
         check.broken("actuator.range_V", message);
     }
-    let (bias_volt, amplitude_volt) = (case.control.bias_volt, case.control.amplitude_volt);
+    let control = &case.control;
+    let (bias_volt, amplitude_volt) = (control.drive_bias().volt(), control.amplitude_volt);
+    let field = if let BiasChoice::Fixed(volt) = control.bias {
+        let is_given = control.bias_volt.to_bits() != ControlValues::default().bias_volt.to_bits();
+        if is_given && (control.bias_volt - volt).abs() > 0.0 {
+            let message = format!(
+                "{} V is of no use beside bias: Fixed({volt}), which holds the bias of every actuator; leave bias_V out",
+                control.bias_volt
+            );
+            check.broken("control.bias_V", message);
+        }
+        "control.bias"
+    } else {
+        "control.bias_V"
+    };
+    let inverse = control.actuators.iter().position(|a| *a == ControlActuator::Inverse);
+    if let (BiasChoice::Fixed(_), Some(i)) = (control.bias, inverse) {
+        check.broken(&format!("control.actuators[{i}]"), INVERSE_SETS_BIAS);
+    }
     let room_volt = (high_volt - bias_volt).min(bias_volt - low_volt);
     let slack = 1e-9 * (high_volt - low_volt).abs();
     // a range that is no range and an amplitude that is none are reported on their own
     let fits = amplitude_volt <= room_volt + slack;
     if low_volt < high_volt && amplitude_volt > 0.0 && !fits {
         let message = format!(
-            "the voltage {bias_volt} V +- {amplitude_volt} V leaves the actuator's range {low_volt} V to {high_volt} V; lower control.amplitude_V to {} V or move control.bias_V",
+            "the voltage {bias_volt} V +- {amplitude_volt} V leaves the actuator's range {low_volt} V to {high_volt} V; lower control.amplitude_V to {} V or move {field}",
             room_volt.max(0.0)
         );
         check.broken("control.amplitude_V", message);

@@ -28,7 +28,8 @@ impl Drives {
     pub fn new(case: &Case, model: Option<Arc<ActuatorModel>>) -> Result<Self, StudyError> {
         let control = &case.control;
         let gain = case.actuator.ideal_amplitude_deg / control.amplitude_volt;
-        let bias_volt = control.bias_volt;
+        let bias = control.drive_bias();
+        let bias_volt = bias.volt();
         let (low, high) = case.actuator.range_volt;
         let range_volt = VoltageRange::new(low, high).map_err(StudyError::Range)?;
         let mut drives = Self {
@@ -37,7 +38,7 @@ impl Drives {
                 model,
                 range_volt,
                 rev_hz: case.actuator.bench_rev_hz,
-                bias_volt,
+                bias,
             }),
             limits: BTreeMap::new(),
         };

@@ -38,7 +38,11 @@ pub fn control_set(
     let inverse =
         |a: &ControlActuator| matches!(a, ControlActuator::Ideal | ControlActuator::Inverse);
     let made = match &ideal {
-        Some(ideal) if drives.hysteretic.is_some() && asked.iter().any(inverse) => {
+        // the inverse sets the bias: one that is held leaves it nothing to set
+        Some(ideal)
+            if drives.hysteretic.as_ref().is_some_and(|drive| !drive.holds_bias())
+                && asked.iter().any(inverse) =>
+        {
             Some(set.through_the_inverse(ideal)?)
         }
         _ => None,

@@ -11,7 +11,7 @@
 //! ( I - R g ) dH = rotor(delta(H)) - H
 //! ```
 //! leaves what is not linear and what the stages behind the load do; Anderson's acceleration takes care of
-//! it. The mean angle does not give way: the bias holds it.
+//! it. The mean angle does not give way where the bias is solved for: that holds it. A bias that is held leaves it to follow.
 
 use crate::flaps::error::PlantError;
 use crate::flaps::motion::FlapMotion;
@@ -50,6 +50,8 @@ pub struct HingeCoupling {
     response: DMatrix<f64>,
     /// Factors of `I - R g`.
     newton: LU<f64, Dyn, Dyn>,
+    /// First of the coefficients of a motion that give way: 0 the mean, 1 where the bias holds it.
+    first: usize,
 }
 
 impl HingeCoupling {
@@ -67,19 +69,38 @@ impl HingeCoupling {
         at_rest: Vec<HarmonicSeries>,
         response: DMatrix<f64>,
     ) -> Option<Self> {
+        Self::of(compliance_deg_per_newton_metre, at_rest, response, 1)
+    }
+
+    /// The same of actuators whose bias is held: the mean angles give way as well, and the columns of `response` for them
+    /// count.
+    pub fn with_held_bias(
+        compliance_deg_per_newton_metre: f64,
+        at_rest: Vec<HarmonicSeries>,
+        response: DMatrix<f64>,
+    ) -> Option<Self> {
+        Self::of(compliance_deg_per_newton_metre, at_rest, response, 0)
+    }
+
+    fn of(
+        compliance_deg_per_newton_metre: f64,
+        at_rest: Vec<HarmonicSeries>,
+        response: DMatrix<f64>,
+        first: usize,
+    ) -> Option<Self> {
         if compliance_deg_per_newton_metre == 0.0 {
             return None;
         }
         let harmonics = at_rest.iter().map(|h| h.harmonics.len()).max().unwrap_or(0);
         let size = 2 * harmonics + 1;
         let mut newton = -compliance_deg_per_newton_metre.to_radians() * &response;
-        for mean in (0..newton.ncols()).step_by(size) {
+        for mean in (0..newton.ncols()).step_by(size).filter(|_| first > 0) {
             // the bias holds the mean angle
             newton.column_mut(mean).fill(0.0);
         }
         newton += DMatrix::identity(newton.nrows(), newton.ncols());
         let newton = newton.lu();
-        Some(Self { harmonics, compliance_deg_per_newton_metre, at_rest, response, newton })
+        Some(Self { harmonics, compliance_deg_per_newton_metre, at_rest, response, newton, first })
     }
 
     fn split(&self, moments: &DVector<f64>) -> Vec<HarmonicSeries> {
@@ -162,13 +183,14 @@ impl HingeCoupling {
     }
 
     /// How far the flaps move by the hinge moments of a motion, over that motion, up to the highest
-    /// harmonic that is controlled: the largest eigenvalue of `g R` there. The means are left out, the bias
+    /// harmonic that is controlled: the largest eigenvalue of `g R` there. The means are left out where the bias
     /// holds them. At 1 the motion feeds itself: the flap is in resonance on its actuator, or swept along.
     pub fn loop_gain(&self) -> f64 {
         let size = 2 * self.harmonics + 1;
         let last = 2 * CONTROLLED.min(self.harmonics);
-        let kept: Vec<usize> =
-            (0..self.response.ncols()).filter(|k| (1..=last).contains(&(k % size))).collect();
+        let kept: Vec<usize> = (0..self.response.ncols())
+            .filter(|k| (self.first..=last).contains(&(k % size)))
+            .collect();
         let open = self.response.select_columns(&kept).select_rows(&kept);
         let eigenvalues =
             (self.compliance_deg_per_newton_metre.to_radians() * open).complex_eigenvalues();

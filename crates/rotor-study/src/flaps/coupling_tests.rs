@@ -1,7 +1,7 @@
 //! The coupled loop against closed forms.
 
 use super::*;
-use crate::flaps::FlapDrive;
+use crate::flaps::{Bias, FlapDrive};
 use crate::series::scaled;
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
@@ -13,7 +13,8 @@ fn soft(compliance_um_per_newton: f64) -> FlapDrive {
     let mut model = ActuatorModel::linear(range, 8.5, 0.04);
     let load = LoadStiffness { stiffness_ratio: 0.0, compliance_um_per_newton };
     model.linkage.push(LinkageStage::LoadStiffness(load));
-    FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    let bias = Bias::Centred { guess_volt: 65.0 };
+    FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias }
 }
 
 fn sine(n: usize, amplitude: f64) -> Vec<(usize, Harmonic)> {

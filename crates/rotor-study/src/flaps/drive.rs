@@ -1,5 +1,6 @@
 //! From voltage harmonics to flap motion: the ideal actuator and the identified one.
 
+use crate::flaps::bias::Bias;
 use crate::flaps::error::PlantError;
 use crate::flaps::full_scale::FullScale;
 use crate::flaps::motion::FlapMotion;
@@ -45,14 +46,14 @@ pub enum FlapDrive {
         range_volt: VoltageRange,
         /// Revolutions per second in the actuator's time.
         rev_hz: f64,
-        /// Where the search for the bias starts, V.
-        bias_volt: f64,
+        /// How its bias is set.
+        bias: Bias,
     },
 }
 
 impl FlapDrive {
-    /// Steady flap motion for voltage harmonics, the bias solved so that the mean angle vanishes
-    /// (paper equation 6).
+    /// Steady flap motion for voltage harmonics. The bias is solved so that the mean angle vanishes
+    /// (paper equation 6), or held, and the mean angle follows.
     ///
     /// # Errors
     /// The actuator's errors: voltage out of range, no bias in the range, orbit not closed.
@@ -68,16 +69,20 @@ impl FlapDrive {
                 voltage_volt.mean = *bias_volt;
                 Ok(FlapMotion { voltage_volt, flap_deg })
             }
-            Self::Model { model, range_volt, rev_hz, bias_volt } => {
-                voltage_volt.mean = *bias_volt;
+            Self::Model { model, range_volt, rev_hz, bias } => {
+                voltage_volt.mean = bias.volt();
                 let drive = PeriodicDrive { model, range_volt, rev_hz: *rev_hz, load: None };
-                drive.biased(voltage_volt, 0.0, BIAS_TOLERANCE_DEG)
+                match bias {
+                    Bias::Centred { .. } => drive.biased(voltage_volt, 0.0, BIAS_TOLERANCE_DEG),
+                    Bias::Fixed { .. } => Ok(drive.response(&voltage_volt)?.into()),
+                }
             }
         }
     }
 
     /// The same motion under a hinge moment (N m, positive in the sense of the flap angle, against
-    /// azimuth), the bias moved so that the mean angle stays that of the `free` motion.
+    /// azimuth), the bias moved so that the mean angle stays that of the `free` motion; of a bias that is held the mean angle
+    /// gives way as well.
     ///
     /// # Errors
     /// As [`Self::motion`].
@@ -86,7 +91,7 @@ impl FlapDrive {
         free: &FlapMotion,
         hinge_moment_newton_metre: &HarmonicSeries,
     ) -> Result<FlapMotion, PlantError> {
-        let Self::Model { model, range_volt, rev_hz, .. } = self else {
+        let Self::Model { model, range_volt, rev_hz, bias } = self else {
             return Ok(free.clone());
         };
         if self.compliance_deg_per_newton_metre() == 0.0 {
@@ -96,7 +101,15 @@ impl FlapDrive {
         let newton = model.calibration.load_newton(-1.0);
         let load = Some(scaled(hinge_moment_newton_metre, newton));
         let drive = PeriodicDrive { model, range_volt, rev_hz: *rev_hz, load };
+        if bias.is_fixed() {
+            return Ok(drive.response(&free.voltage_volt)?.into());
+        }
         drive.biased(free.voltage_volt.clone(), free.flap_deg.mean, LOADED_MEAN_TOLERANCE_DEG)
+    }
+
+    /// Whether the bias is held, so that the mean flap angle of an actuator with memory is not.
+    pub fn holds_bias(&self) -> bool {
+        matches!(self, Self::Model { bias, .. } if bias.is_fixed())
     }
 
     /// How far a steady hinge moment turns the flap, deg per N m in its own sense; 0 without a load
@@ -179,7 +192,7 @@ impl FlapDrive {
     /// the periodic inverse of the model, with as many voltage harmonics.
     ///
     /// # Errors
-    /// As [`ActuatorModel::periodic_inverse`].
+    /// As [`ActuatorModel::periodic_inverse`]; [`PlantError::HeldBias`] where the bias is held, which the inverse sets.
     pub fn inverse(&self, wanted_deg: &HarmonicSeries) -> Result<FlapMotion, PlantError> {
         let count = wanted_deg.harmonics.len();
         match self {
@@ -190,6 +203,7 @@ impl FlapDrive {
                 };
                 self.motion(&(1..=count).map(voltage).collect::<Vec<_>>())
             }
+            Self::Model { bias, .. } if bias.is_fixed() => Err(PlantError::HeldBias),
             Self::Model { model, rev_hz, .. } => {
                 let settings =
                     InverseSettings { voltage_harmonics: count, ..InverseSettings::default() };
@@ -244,16 +258,16 @@ impl FlapDrive {
     }
 
     /// Swing of a voltage with these extremes and the room the range leaves it, V: from its fixed bias
-    /// to the tighter side for the ideal actuator, over the whole range where the bias is free.
+    /// to the tighter side for the ideal actuator and where the bias is held, over the whole range where it is free.
     fn swing_and_room(&self, (low, high): (f64, f64)) -> (f64, f64) {
-        match self {
-            Self::Ideal { bias_volt, range_volt, .. } => {
-                let below = bias_volt - range_volt.lowest_volt();
-                let above = range_volt.highest_volt() - bias_volt;
-                if -low / below > high / above { (-low, below) } else { (high, above) }
-            }
-            Self::Model { range_volt, .. } => (high - low, range_volt.span_volt()),
-        }
+        let (bias_volt, range_volt) = match self {
+            Self::Ideal { bias_volt, range_volt, .. } => (*bias_volt, range_volt),
+            Self::Model { bias: Bias::Fixed { volt }, range_volt, .. } => (*volt, range_volt),
+            Self::Model { range_volt, .. } => return (high - low, range_volt.span_volt()),
+        };
+        let below = bias_volt - range_volt.lowest_volt();
+        let above = range_volt.highest_volt() - bias_volt;
+        if -low / below > high / above { (-low, below) } else { (high, above) }
     }
 
     /// Largest amplitude of one harmonic that stays inside the range of voltages with the bias that
@@ -270,10 +284,16 @@ impl FlapDrive {
         harmonic: usize,
         amplitude_volt: f64,
     ) -> Result<FullScale, PlantError> {
-        let Self::Model { range_volt: range, .. } = self else {
+        let Self::Model { range_volt: range, bias, .. } = self else {
             let motion = self.motion(&[(harmonic, cosine(amplitude_volt))])?;
             return Ok(FullScale::of(&motion, harmonic, amplitude_volt));
         };
+        if let Bias::Fixed { volt } = bias {
+            let room = (range.highest_volt() - volt).min(volt - range.lowest_volt());
+            let amplitude = amplitude_volt.min(room);
+            let motion = self.motion(&[(harmonic, cosine(amplitude))])?;
+            return Ok(FullScale::of(&motion, harmonic, amplitude));
+        }
         let mut amplitude = (0.9 * amplitude_volt).min(0.45 * range.span_volt());
         let margin_volt = FULL_SCALE_MARGIN * range.span_volt();
         for _ in 0..FULL_SCALE_PASSES {
@@ -470,7 +490,21 @@ mod tests {
         };
         let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
         let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
-        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+        centred(model)
+    }
+
+    fn centred(model: ActuatorModel) -> FlapDrive {
+        let (range_volt, bias) = (model.range_volt, Bias::Centred { guess_volt: 65.0 });
+        FlapDrive::Model { model: Arc::new(model), range_volt, rev_hz: 5.0, bias }
+    }
+
+    /// The same actuator with its bias held.
+    fn held(drive: &FlapDrive, volt: f64) -> FlapDrive {
+        let mut held = drive.clone();
+        if let FlapDrive::Model { bias, .. } = &mut held {
+            *bias = Bias::Fixed { volt };
+        }
+        held
     }
 
     #[test]
@@ -507,7 +541,7 @@ mod tests {
         };
         let law = ActuatorLaw::PrandtlIshlinskii(PrandtlIshlinskii::new(parameters).unwrap());
         let model = ActuatorModel { law, ..ActuatorModel::linear(range, 8.5, 0.04) };
-        FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+        centred(model)
     }
 
     /// The mean of `r (zeta + q zeta^2)` over a swing of `a` about `z` is `r (z + q z^2 + q a^2 / 2)`: it vanishes at
@@ -532,6 +566,57 @@ mod tests {
                 assert!((found - exact).abs() <= 5e-5, "{volt} V: {found} {exact}");
             }
         }
+    }
+
+    /// A bias that is held leaves the mean `r (z + q z^2 + q a^2 / 2)` of the same curve, and the swing the room to the nearer
+    /// end of the range.
+    #[test]
+    fn a_bias_that_is_held_leaves_the_mean_angle_to_the_actuator() {
+        let (q, r) = (0.05, 8.5);
+        for (volt, swing) in [(65.0, 40.0), (50.0, 60.0), (90.0, 55.0)] {
+            let drive = held(&bent(q), volt);
+            let voltages = [(3, Harmonic { cosine: 0.6 * swing, sine: -0.8 * swing })];
+            let motion = drive.motion(&voltages).unwrap();
+            assert_eq!(motion.voltage_volt.mean.to_bits(), f64::to_bits(volt));
+            let (z, a) = ((volt - 65.0) / 85.0, swing / 85.0);
+            let mean_deg = r * (z + q * z * z + 0.5 * q * a * a);
+            assert!((motion.flap_deg.mean - mean_deg).abs() < 1e-4, "{motion:?} {mean_deg}");
+            assert!(mean_deg.abs() > 0.04, "the mean of this test is to be seen");
+            // the bias does not move with the control
+            for along in drive.tangent(&voltages, 1.0).unwrap() {
+                assert_eq!(along.voltage_volt.mean.to_bits(), 0);
+            }
+        }
+        let full = held(&bent(q), 50.0).full_scale(3, 85.0).unwrap();
+        assert!((full.amplitude_volt - 70.0).abs() < 1e-12, "{full:?}");
+        let beyond = held(&bent(q), 50.0).motion(&[(3, cosine(71.0))]);
+        assert!(matches!(beyond, Err(PlantError::VoltageSwing { .. })), "{beyond:?}");
+        let refused = held(&bent(q), 65.0).inverse(&HarmonicSeries::zero(3));
+        assert_eq!(refused, Err(PlantError::HeldBias));
+    }
+
+    /// A steady hinge moment turns a soft flap whose bias is held; one that is centred gets a bias against it.
+    #[test]
+    fn a_steady_moment_turns_the_flap_whose_bias_is_held() {
+        let range = VoltageRange::new(-20.0, 150.0).unwrap();
+        let mut model = ActuatorModel::linear(range, 8.5, 0.04);
+        let load =
+            preisach_dyn::LoadStiffness { stiffness_ratio: 0.0, compliance_um_per_newton: 0.1 };
+        model.linkage.push(LinkageStage::LoadStiffness(load));
+        let drive = centred(model);
+        let give = drive.compliance_deg_per_newton_metre();
+        let moment = HarmonicSeries { mean: -0.5, ..HarmonicSeries::zero(1) };
+        let voltages = [(2, cosine(30.0))];
+        for (drive, mean_deg) in [(drive.clone(), 0.0), (held(&drive, 65.0), -0.5 * give)] {
+            let free = drive.motion(&voltages).unwrap();
+            let loaded = drive.loaded_motion(&free, &moment).unwrap();
+            assert!(
+                (loaded.flap_deg.mean - mean_deg).abs() < 1e-7,
+                "{} {mean_deg}",
+                loaded.flap_deg.mean
+            );
+        }
+        assert!(give > 1e-3, "{give}");
     }
 
     /// Where the centring bias lies beyond the range by a trifle, the end of the range leaves a small mean.

@@ -23,6 +23,9 @@ pub enum PlantError {
     /// The search for the bias voltage ended for a reason unknown here.
     #[error("the search for the bias voltage failed")]
     BiasSearch,
+    /// The inverse is asked of an actuator whose bias is held.
+    #[error("the inverse sets the bias, which is held here: write control.bias: Centred")]
+    HeldBias,
     /// Flap motion and hinge moment did not settle on each other.
     #[error(
         "flap motion and hinge moment did not settle: {residual_deg:.2e} deg are left after {iterations} responses of the rotor (wanted {tolerance_deg:.0e}); the actuator is soft against the hinge moment, or the flap near a resonance on it: lower compliance_um_per_newton"

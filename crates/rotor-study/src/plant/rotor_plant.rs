@@ -77,7 +77,7 @@ impl RotorPlant {
         let numbers = harmonics.iter().map(|&n| u32::try_from(n).unwrap_or(u32::MAX)).collect();
         let layout = ControlLayout::new(flaps, numbers)?;
         let coupling = rotor
-            .coupling(drive.compliance_deg_per_newton_metre())
+            .coupling(drive.compliance_deg_per_newton_metre(), drive.holds_bias())
             .map_err(|source| RunError::plant("measured", &layout.zero())(source.into()))?;
         let of_pair = |pair: usize| full_scale[pair % full_scale.len()];
         Ok(Self {

@@ -79,18 +79,53 @@ impl TrimmedRotor {
         response.hinge.iter().map(|h| scaled(&h.total(), unit)).collect()
     }
 
-    /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m); none without give.
+    /// The same with the columns of the mean angles, which a bias that is held leaves to follow.
+    fn hinge_response_with_means(&self) -> Result<DMatrix<f64>, ResponseError> {
+        let mut response = found(&self.hinge_response, || self.hinge_response())?.clone();
+        let rest = &self.trim.rotor.hinge;
+        let (flaps, unit) = (rest.len(), self.scales().moment_newton_metre());
+        let size = response.ncols() / flaps.max(1);
+        let authority = self.linearised_for(&[0]).ok().map(|[settled, _]| settled);
+        for flap in 0..flaps {
+            let change = if let Some(authority) = &authority {
+                authority.hinge(flap, &only(0, 180.0 / std::f64::consts::PI))
+            } else {
+                let mut angles_rad = vec![HarmonicSeries::zero(0); flaps];
+                angles_rad[flap] = only(0, RESPONSE_STEP_RAD);
+                let moved = self.with_flaps(angles_rad)?;
+                let pairs = moved.hinge.iter().zip(rest);
+                pairs
+                    .map(|(moved, rest)| {
+                        weighted(&moved.total(), &rest.total(), 1.0 / RESPONSE_STEP_RAD)
+                    })
+                    .collect()
+            };
+            let all = change.iter().flat_map(|h| coefficients(h, size / 2));
+            let column: Vec<f64> = all.map(|c| unit * c).collect();
+            response.column_mut(flap * size).copy_from_slice(&column);
+        }
+        Ok(response)
+    }
+
+    /// The coupling of flaps that give way by an angle per hinge moment, deg/(N m), their mean angles too where the bias is
+    /// held; none without give.
     ///
     /// # Errors
     /// The errors of the response.
     pub fn coupling(
         &self,
         compliance_deg_per_newton_metre: f64,
+        holds_bias: bool,
     ) -> Result<Option<HingeCoupling>, ResponseError> {
         if compliance_deg_per_newton_metre == 0.0 || self.trim.rotor.hinge.is_empty() {
             return Ok(None);
         }
         let at_rest = self.hinge_moments_newton_metre(&self.trim.rotor);
+        if holds_bias {
+            let response = self.hinge_response_with_means()?;
+            let give = compliance_deg_per_newton_metre;
+            return Ok(HingeCoupling::with_held_bias(give, at_rest, response));
+        }
         let response = found(&self.hinge_response, || self.hinge_response())?;
         Ok(HingeCoupling::new(compliance_deg_per_newton_metre, at_rest, response.clone()))
     }

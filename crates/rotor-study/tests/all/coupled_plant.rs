@@ -6,7 +6,7 @@ use flap_aero::{AttachedFlowModel, FlapChord, Mach};
 use hhc_control::Plant;
 use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
 use rotor_study::case::{Case, CompressibilityChoice, InflowChoice, PrescribedTrim, TrimValues};
-use rotor_study::{COUPLING_TOLERANCE_DEG, FlapDrive, FullScale, RotorPlant, TrimmedRotor};
+use rotor_study::{Bias, COUPLING_TOLERANCE_DEG, FlapDrive, FullScale, RotorPlant, TrimmedRotor};
 use std::sync::Arc;
 
 /// A linear actuator of 0.1 deg/V whose linkage gives way by `compliance_um_per_newton`.
@@ -15,7 +15,8 @@ fn soft(compliance_um_per_newton: f64) -> FlapDrive {
     let mut model = ActuatorModel::linear(range, 8.5, 0.04);
     let load = LoadStiffness { stiffness_ratio: 0.0, compliance_um_per_newton };
     model.linkage.push(LinkageStage::LoadStiffness(load));
-    FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias_volt: 65.0 }
+    let bias = Bias::Centred { guess_volt: 65.0 };
+    FlapDrive::Model { model: Arc::new(model), range_volt: range, rev_hz: 5.0, bias }
 }
 
 /// Hover without pitch and inflow, blades that hardly move, quasi-steady sections.

@@ -2,5 +2,6 @@
 
 mod costs;
 mod coupled_plant;
+mod held_bias;
 mod power_weight;
 mod root_pitch;
