@@ -189,6 +189,7 @@ pub(crate) fn unguided<'a>(
         step_volt: case.t_step_volt(),
         settings,
         layout,
+        handed_t: None,
     })
 }
 
@@ -200,6 +201,9 @@ pub(crate) fn flight_of<'a>(
     model: &'a ActuatorModel,
 ) -> Result<Flight<'a>, FlightError> {
     let mut flight = unguided(case, values, path, model)?;
+    if let Some(handed) = &case.control.handed_t {
+        flight.handed_t = Some(handed.set(&values.harmonics)?.clone());
+    }
     let state = flight.state_at(0.0);
     let start = HubLoads::from_parts(path.loads(state, &[])?);
     let weights: LoadWeights =

@@ -4,6 +4,7 @@ use hhc_control::ControlError;
 use preisach_dyn::PreisachError;
 use rotor_response::ResponseError;
 use rotor_study::StudyError;
+use rotor_study::case::HandedTError;
 
 /// Rejected input and numerical failures of a flight.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -51,6 +52,15 @@ pub enum FlightError {
         /// Its own error.
         source: PreisachError,
     },
+    /// T that a user hands in.
+    #[error(transparent)]
+    HandedT(#[from] HandedTError),
+    /// The same, or the arrays it is read from: what was found, what was expected.
+    #[error("{message}")]
+    Arrays {
+        /// In words.
+        message: String,
+    },
     /// The controller.
     #[error(transparent)]
     Control(#[from] ControlError),
@@ -63,6 +73,7 @@ impl FlightError {
             Self::Trim { source, .. } => source.field(),
             Self::WakeDiverged { .. } => "inflow.model",
             Self::Actuator { .. } => "actuator",
+            Self::HandedT(_) | Self::Arrays { .. } => "control.t_file",
             Self::OutOfRange { .. } | Self::Response { .. } | Self::Control(_) => "flight",
         }
     }

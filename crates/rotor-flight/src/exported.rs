@@ -144,8 +144,8 @@ fn notes(case: &Case, values: &FlightValues) -> Vec<String> {
 /// The points of all arrays.
 fn point_axis(points: &[(FlightState, &TrimmedRotor)]) -> Axis {
     let label = |(state, _): &(FlightState, &TrimmedRotor)| {
-        let step = if state.thrust_share > 0.0 { "_after_thrust_step" } else { "" };
-        format!("mu_{:.4}{step}", state.advance_ratio)
+        let step = if state.thrust_share > 0.0 { AFTER_STEP } else { "" };
+        format!("{POINT_AT}{:.4}{step}", state.advance_ratio)
     };
     Axis::of_unit("point", points.iter().map(label).collect(), "")
 }
@@ -180,11 +180,26 @@ fn conditions(case: &Case, points: &[(FlightState, &TrimmedRotor)]) -> LabelledA
 }
 
 /// Names of the loads, without their unit.
-fn load_labels(case: &Case) -> Vec<String> {
+pub(crate) fn load_labels(case: &Case) -> Vec<String> {
     let per_rev = case.rotor.blades;
     let both = |name: &&str| ["cos", "sin"].map(|part| format!("{name}_{per_rev}_per_rev_{part}"));
     HubLoads::NAMES.iter().flat_map(both).collect()
 }
+
+/// Names of the controls of so many flaps at a set of harmonics.
+pub(crate) fn control_labels(flaps: usize, set: &[usize]) -> Vec<String> {
+    (1..=flaps)
+        .flat_map(|flap| set.iter().map(move |n| (flap, n)))
+        .flat_map(|(flap, n)| ["cos", "sin"].map(|part| format!("flap{flap}_{n}_per_rev_{part}_V")))
+        .collect()
+}
+
+/// How names of arrays of T begin; the harmonics follow, with lines between them.
+pub(crate) const T_OF: &str = "T_";
+/// How names of points begin; the advance ratio follows.
+pub(crate) const POINT_AT: &str = "mu_";
+/// How names of points after a step of the thrust end.
+pub(crate) const AFTER_STEP: &str = "_after_thrust_step";
 
 /// Nondimensional loads by their labels: forces, then as many moments.
 pub(crate) fn load_axis(labels: Vec<String>) -> Axis {
@@ -231,10 +246,7 @@ fn sensitivity(
     let steps = flight.steps()?;
     let each = points.iter().map(|(state, _)| Ok(flight.t_in(*state, &steps)?.columns()));
     let t: Vec<Vec<Vec<f64>>> = each.collect::<Result<_, FlightError>>()?;
-    let controls: Vec<String> = (1..=flight.layout.flaps())
-        .flat_map(|flap| set.iter().map(move |n| (flap, n)))
-        .flat_map(|(flap, n)| ["cos", "sin"].map(|part| format!("flap{flap}_{n}_per_rev_{part}_V")))
-        .collect();
+    let controls = control_labels(flight.layout.flaps(), set);
     let name: Vec<String> = set.iter().map(usize::to_string).collect();
     let name = name.join("_");
     let axes = vec![
@@ -243,7 +255,7 @@ fn sensitivity(
         point_axis(points),
     ];
     let t = LabelledArray::from_fn(
-        &format!("T_{name}"),
+        &format!("{T_OF}{name}"),
         "T = dZ/du: unit of the row per V",
         axes,
         |i, j, k| t[k][j][i],

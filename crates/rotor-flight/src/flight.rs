@@ -6,6 +6,7 @@ use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_study::Bias;
+use rotor_study::case::HandedSet;
 
 /// Revolutions that settle flaps and bias before T is identified.
 const SETTLED_REV: usize = 12;
@@ -57,6 +58,8 @@ pub struct Flight<'a> {
     pub step_volt: f64,
     /// Weights and limits of the controller.
     pub settings: RelaxedSettings,
+    /// T that is handed in for the controllers; none for that of the rotor.
+    pub handed_t: Option<HandedSet>,
 }
 
 /// A value against time, linear in between and held beyond the ends; 0 of no points.
@@ -102,11 +105,14 @@ impl Flight<'_> {
         }
     }
 
-    /// What the flaps do under a step of each control up and down, settled.
+    /// What the flaps do under a step of each control up and down, settled; nothing where T is handed in.
     ///
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
     pub(crate) fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
+        if self.handed_t.is_some() {
+            return Ok(Vec::new());
+        }
         let settled = |control: usize, step_volt: f64| {
             let mut control_volt = self.layout.zero();
             control_volt[control] = step_volt;
@@ -121,7 +127,8 @@ impl Flight<'_> {
         (0..self.layout.len()).into_par_iter().map(both).collect()
     }
 
-    /// T in a state about zero control, 1/V, by central differences over settled [`Self::steps`].
+    /// T in a state about zero control, 1/V, by central differences over settled [`Self::steps`]; that which is handed in, if it
+    /// is.
     ///
     /// # Errors
     /// [`FlightError::Response`], [`FlightError::Control`].
@@ -130,6 +137,9 @@ impl Flight<'_> {
         state: FlightState,
         steps: &[[Vec<HarmonicSeries>; 2]],
     ) -> Result<TMatrix, FlightError> {
+        if let Some(handed) = &self.handed_t {
+            return Ok(handed.at(state.advance_ratio)?);
+        }
         let column = |[up, down]: &[Vec<HarmonicSeries>; 2]| {
             let (up, down) = (self.path.loads(state, up)?, self.path.loads(state, down)?);
             let slope = |(up, down): (&f64, f64)| (up - down) / (2.0 * self.step_volt);

@@ -8,7 +8,7 @@
 //! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
 //! - *Failures* ([`failures_of_case`]): what control reaches when a flap or an actuator of one blade, or a load cell, fails.
 //! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
-//!   ([`controllers_of_case`]); the rotor as state space ([`state_space_of_case`]).
+//!   ([`controllers_of_case`]); T that comes back ([`handed_t`]); the rotor as state space ([`state_space_of_case`]).
 //!
 //! Values in, values out: no file, no terminal.
 
@@ -19,6 +19,7 @@ mod failures;
 mod flaps;
 mod flight;
 mod flown;
+mod handed;
 mod path;
 mod pilot;
 mod state_space;
@@ -31,6 +32,7 @@ pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
+pub use handed::handed_t;
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 pub use state_space::state_space_of_case;

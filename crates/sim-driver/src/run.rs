@@ -174,8 +174,8 @@ pub fn run_trimmed(
 /// As [`StoredResult::new`], and [`BenchError::Actuator`](bench_study::BenchError::Actuator) if a model cannot follow a bench record.
 pub fn stored_of(loaded: &LoadedCase, outcome: &RunOutcome) -> Result<StoredResult, SimError> {
     let bench = BenchPart::of(&outcome.actuators)?;
-    let airfoils = loaded.airfoil_hashes()?;
-    let inputs = [&outcome.actuators.inputs, &loaded.measured.inputs, &airfoils].map(Vec::as_slice);
+    let tables = loaded.table_hashes()?;
+    let inputs = [&outcome.actuators.inputs, &loaded.measured.inputs, &tables].map(Vec::as_slice);
     let inputs = inputs.concat();
     StoredResult::new(&loaded.case, inputs, bench, outcome.result.clone())
 }

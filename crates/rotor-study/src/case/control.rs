@@ -1,8 +1,10 @@
 //! The sections of a case: trim, actuator and control.
 
+use super::HandedT;
 use super::field::{Value, is_default, section, values, variant_names};
 use crate::flaps::Bias;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// What the rotor is trimmed to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -370,6 +372,10 @@ section! {
         /// harmonic); loops then use `Settled`.
         #[serde(skip_serializing_if = "is_default")]
         pub t_inflow: TInflowChoice = TInflowChoice::Settled, Any, "", "";
+        /// T that the controller holds in place of its own: JSON or CSV as `hhc export --what t` writes it, relative to the
+        /// case. The rotor stays what it is. For the real actuator, or the ideal one alone; not with `Local`.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub t_file: Option<String> = None, Any, "", "a file that `hhc export --what t` wrote, relative to the case file";
         /// Largest mean power that the actuators of one blade give, none taken back; with `effort: Limits`.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub power_limit_watt as "power_limit_W": Option<f64> = None, Within(1e-6, 1e6), "W",
@@ -382,6 +388,10 @@ section! {
         pub max_steps: usize = 40, Count(1, 10_000), "", "40 is usual";
         /// Relative change of the voltages at which the control has converged.
         pub step_tolerance: f64 = 1e-4, Within(1e-12, 0.1), "", "1e-4 is usual";
+    }
+    apart {
+        /// What `t_file` holds; none without one.
+        pub handed_t: Option<Arc<HandedT>> = None;
     }
 }
 

@@ -20,6 +20,7 @@ mod control;
 mod fault;
 mod field;
 mod flight;
+mod handed_t;
 mod measured;
 mod models;
 mod plausibility;
@@ -41,6 +42,7 @@ pub use control::{
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
 pub use flight::{FailedFlap, FailureNotice, FlightController, FlightValues, ThrustStep};
+pub use handed_t::{HandedSet, HandedT, HandedTError};
 pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection, UncertainField};
 pub use plausibility::PlausibilityWarning;
 pub use sections::{

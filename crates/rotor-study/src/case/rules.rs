@@ -16,6 +16,7 @@ const INVERSE_SETS_BIAS: &str = "Inverse gives the whole voltage, bias included,
 const NEEDS_LIMITS: &str =
     "a limit of the power is kept by the cone program alone; set control.effort to Limits";
 const NEEDS_CONSTANT_T: &str = "a weight tuned to the stroke (effort: MeetStroke) is a root find over whole loops with one T; with a T that is learnt their ends scatter; write controller: Global, or effort: Limits, which keeps the stroke of each flap exactly";
+const HELD_T: &str = "controller: Local takes T from the rotor at every step and has no use for one that is handed in; write controller: Global, or leave t_file out";
 const NEEDS_FREE_WAKE: &str =
     "there is no free wake to converge anew; write t_inflow: Settled, or inflow: FreeWake()";
 const NO_LOAD_WEIGHTED: &str =
@@ -286,6 +287,7 @@ fn check_control(check: &mut Checker, case: &Case) {
         ("harmonics", case.flaps.is_empty() && !c.harmonics.is_empty(), NEEDS_FLAPS),
         ("controller", tuned && c.controller != ControllerChoice::Global, NEEDS_CONSTANT_T),
         ("t_inflow", c.t_inflow == TInflowChoice::Reconverged && !has_wake, NEEDS_FREE_WAKE),
+        ("t_file", c.t_file.is_some() && c.controller == ControllerChoice::Local, HELD_T),
         ("load_weights", weighs_none, NO_LOAD_WEIGHTED),
         ("power_limit_W", c.power_limit_watt.is_some() && !limited, NEEDS_LIMITS),
     ] {

@@ -119,6 +119,9 @@ impl ControlSet<'_> {
     /// Feedback to convergence on the plant itself, from zero control.
     fn feedback(&self, actuator: ControlActuator) -> Result<ControlStudy, StudyError> {
         let mut plant = self.plant(actuator)?;
+        if let Some(t) = self.handed_t(actuator, &plant)? {
+            return self.controlled(actuator, plant, &t);
+        }
         let step_volt = self.step_volts(&plant);
         let t = match self.case.control.controller {
             ControllerChoice::Local => self.t_at_rest(&plant),
@@ -139,7 +142,10 @@ impl ControlSet<'_> {
     ) -> Result<ControlStudy, StudyError> {
         let failed = |e| self.failed(actuator, e);
         let control = &self.case.control;
+        let is_handed = self.handed_t(actuator, &plant)?.is_some();
         let way = match (actuator, control.controller) {
+            // a T that is handed in is held, and never identified again
+            (_, ControllerChoice::Global) if is_handed => Controller::Global,
             // the ideal actuator has nearly one T everywhere: at limits that bind even the rotor's own bend shows
             (ControlActuator::Ideal, ControllerChoice::Global | ControllerChoice::Adaptive) => {
                 Controller::Global

@@ -1,6 +1,6 @@
 //! One set of harmonics under control: its plant, its weights and its controller.
 
-use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
+use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice, HandedTError};
 use crate::control::drives::Drives;
 use crate::control::study::ControlStudy;
 use crate::error::StudyError;
@@ -95,6 +95,37 @@ impl ControlSet<'_> {
     pub(super) fn t_at_rest(&self, plant: &RotorPlant) -> Result<TMatrix, RunError<PlantError>> {
         let found = plant.t_at_rest(self.step_volt());
         found.map_err(RunError::plant("linearised", &plant.layout().zero()))
+    }
+
+    /// T that the case hands in for a plant, its power outputs beside; none for an actuator that it is not of.
+    ///
+    /// # Errors
+    /// [`StudyError::Refused`] for a set or an advance ratio that it does not hold.
+    pub(super) fn handed_t(
+        &self,
+        actuator: ControlActuator,
+        plant: &RotorPlant,
+    ) -> Result<Option<TMatrix>, StudyError> {
+        let driven = match self.drives.hysteretic {
+            Some(_) => ControlActuator::Hysteretic,
+            None => ControlActuator::Ideal,
+        };
+        let Some(handed) = self.case.control.handed_t.as_ref().filter(|_| actuator == driven)
+        else {
+            return Ok(None);
+        };
+        let refused = |error: HandedTError| StudyError::Refused {
+            field: "control.t_file".to_owned(),
+            message: error.to_string(),
+        };
+        let own = handed.set(self.harmonics).map_err(refused)?;
+        let t = own.at(self.rotor.trim().flight.advance_ratio).map_err(refused)?;
+        let power = plant.power_outputs();
+        let columns = t.columns().into_iter().enumerate();
+        let columns: Vec<Vec<f64>> = columns
+            .map(|(control, loads)| loads.into_iter().chain(power.along(control)).collect())
+            .collect();
+        TMatrix::from_columns(&columns).map(Some).map_err(|error| refused(error.into()))
     }
 
     /// How a controller of the case knows T.

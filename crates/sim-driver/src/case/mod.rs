@@ -4,7 +4,7 @@
 //! |---|---|
 //! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_study::case`] |
 //! | tables of the fields for the book, and the case of `hhc init` | `describe` |
-//! | RON text, lines of fields, old names, tables, measured files and actuators that a case names | `read`, `airfoils`, `measured` |
+//! | RON text, lines of fields, old names, tables, measured files and actuators that a case names | `read`, `airfoils`, `measured`, `t_file` |
 //!
 //! [`read_case`] reports every problem of a file at once. A [`LoadedCase`] is the values with the places of
 //! their fields.
@@ -13,6 +13,7 @@ mod airfoils;
 mod describe;
 mod measured;
 mod read;
+mod t_file;
 #[cfg(test)]
 mod tests;
 

@@ -2,6 +2,7 @@
 
 use super::airfoils::read_airfoils;
 use super::measured::{MeasuredRotor, read_measured};
+use super::t_file::read_t_file;
 use super::{ActuatorChoice, ActuatorPath, Case, CaseFaults, ControlActuator, PlausibilityWarning};
 use crate::SimError;
 use crate::files::{
@@ -69,15 +70,16 @@ impl LoadedCase {
         }
     }
 
-    /// blake3 of every aerofoil table that the case names, for the key of a result.
+    /// blake3 of every aerofoil table and of the T that the case names, for the key of a result.
     ///
     /// # Errors
     /// A file that cannot be read any more.
-    pub fn airfoil_hashes(&self) -> Result<Vec<String>, Problem> {
+    pub fn table_hashes(&self) -> Result<Vec<String>, Problem> {
         let named = self.case.aerodynamics.airfoils.iter();
-        let text = |table: &str| Ok(airfoil_text(&self.folder, table)?.text);
-        let hash = |text: String| blake3::hash(text.as_bytes()).to_hex().to_string();
-        named.map(|airfoil| text(&airfoil.table).map(hash)).collect()
+        let tables = named.map(|airfoil| airfoil_text(&self.folder, &airfoil.table));
+        let handed = self.case.control.t_file.iter().map(|file| self.folder.read(file));
+        let hash = |of: Source| blake3::hash(of.text.as_bytes()).to_hex().to_string();
+        tables.chain(handed).map(|source| source.map(hash)).collect()
     }
 
     /// An error of a model or a study at the line of its field.
@@ -140,6 +142,10 @@ fn resolved(mut case: Case, index: RonIndex, folder: &Folder) -> Result<LoadedCa
     match read_airfoils(&case.aerodynamics.airfoils, folder, &index) {
         Ok(tables) => case.aerodynamics.tables = tables,
         Err(more) => problems.append(more),
+    }
+    match read_t_file(&case, folder, &index) {
+        Ok(t) => case.control.handed_t = t,
+        Err(problem) => problems.append(problem.into()),
     }
     let radius_m = case.rotor.radius_m;
     let measured = read_measured(&case.measured, radius_m, folder, &index);

@@ -50,7 +50,7 @@ impl CaseRunner {
     fn inputs(&self, loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
         let hash = |source: &Source| blake3::hash(source.text.as_bytes()).to_hex().to_string();
         let mut inputs = loaded.measured.inputs.clone();
-        inputs.extend(loaded.airfoil_hashes()?);
+        inputs.extend(loaded.table_hashes()?);
         match loaded.actuator_source() {
             ActuatorSource::Ideal => {}
             ActuatorSource::Stored { folder, file } => inputs.push(hash(&folder.read(&file)?)),

@@ -184,3 +184,50 @@ fn tables_and_mat_hold_the_same_and_what_cannot_be_is_refused() {
     place.write("high.ron", &QUICK_CASE.replace("harmonics: [[3]]", "harmonics: [[11]]"));
     place.hhc(&["export", "high.ron", "--to", "csv", "-o", "p"]).rejected(&["11", "1 to 10"]);
 }
+
+/// T leaves as JSON and as CSV and comes back: the flight is the same byte for byte; what is not of the case is refused.
+#[test]
+fn t_handed_back_flies_the_same_flight() {
+    let place = flying("noise_percent: 2, duration_s: 12");
+    place.hhc(&["export", "case.ron", "--to", "json", "-o", "j"]).done();
+    place.hhc(&["export", "case.ron", "--to", "csv", "-o", "c"]).done();
+    place.hhc(&["fly", "case.ron", "--out", "own"]).done();
+    let case = place.read("case.ron");
+    let with = |name: &str, file: &str| {
+        let control = format!("    control: (t_file: \"{file}\", ");
+        place.write(name, &case.replace("    control: (", &control));
+    };
+    for (name, file) in [("json", "j/rotor.json"), ("csv", "c/rotor_T_2_3.csv")] {
+        with("handed.ron", file);
+        place.hhc(&["fly", "handed.ron", "--out", name]).done();
+        let flown = place.read(&format!("{name}/flight.csv"));
+        assert!(flown == place.read("own/flight.csv"), "{file}");
+    }
+    // a set that the file does not hold, at the field of the case
+    with("handed.ron", "c/rotor_T_2_3.csv");
+    let missing = ["handed.ron", "control.t_file", "T of 2+3 per rev, not of 3 per rev"];
+    place.hhc(&["run", "handed.ron", "--out", "r"]).failed(2, &missing);
+    // no T, no table, no number, another unit: each in words, with its place
+    with("handed.ron", "c/rotor_baseline.csv");
+    place
+        .hhc(&["check", "handed.ron"])
+        .rejected(&["rotor_baseline.csv:1", "then a column for each control"]);
+    with("handed.ron", "nowhere.json");
+    place.hhc(&["check", "handed.ron"]).rejected(&["handed.ron", "control.t_file", "nowhere.json"]);
+    let table = place.read("c/rotor_T_2_3.csv");
+    for (name, from, to, said) in [
+        ("unit.csv", "m0 Omega^2 R^2", "N", "is in `N`, expected `m0 Omega^2 R^2`"),
+        ("order.csv", "fx_4_per_rev_cos", "fx_4_per_rev_sine", "the case has `fx_4_per_rev_cos`"),
+        ("word.csv", ",m0 Omega^2 R^3,", ",m0 Omega^2 R^3,x", "is no number"),
+        ("flap.csv", "flap2_3_per_rev_sin_V", "flap3_3_per_rev_sin_V", "control 8 is `flap3_3"),
+    ] {
+        place.write(name, &table.replace(from, to));
+        with("handed.ron", name);
+        place.hhc(&["check", "handed.ron"]).rejected(&[name, said]);
+    }
+    let whole = place.read("j/rotor.json");
+    place.write("broken.json", &whole[..whole.len() / 2]);
+    with("handed.ron", "broken.json");
+    let said = "expected the JSON of `hhc export --what t`";
+    place.hhc(&["check", "handed.ron"]).rejected(&["broken.json:", said]);
+}

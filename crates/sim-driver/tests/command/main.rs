@@ -6,6 +6,7 @@ mod actuator_use;
 mod bad_input;
 mod commands;
 mod compare;
+mod costs;
 mod diagnosis_page;
 mod disk;
 mod export;
