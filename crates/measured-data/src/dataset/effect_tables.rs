@@ -261,6 +261,9 @@ impl Reading<'_> {
             if own.name.is_empty() {
                 self.problems.push(path("name"), Fault::Empty { of: "the name of a suspect" });
             }
+            if let Some(fault) = self.folder.leads_out(&own.file()) {
+                self.problems.push(path("file"), fault);
+            }
             if !own.amount.is_finite() || own.amount - own.none == 0.0 {
                 let message = format!(
                     "is {}, and {} is no effect: expected the amount that the table was computed with",
@@ -278,6 +281,7 @@ impl Reading<'_> {
                 self.problems.push(path("range"), Fault::Other(message));
             }
         }
+        effects.retain(|own| self.folder.leads_out(&own.file()).is_none());
         let listed: Vec<String> = effects.iter().map(EffectFile::file).collect();
         for file in files.iter().filter(|file| !listed.contains(file)) {
             let name = file.trim_start_matches(EFFECT).trim_end_matches(TABLE).to_owned();

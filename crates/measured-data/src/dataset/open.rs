@@ -8,7 +8,6 @@ use crate::tables::{
     Channel, Declared, MeasuredTable, Record, Spans, check_rests, several_runs, unknown_unit,
 };
 use std::collections::BTreeMap;
-use std::path::{Component, Path};
 
 /// Name of the file that describes a data folder.
 pub const DATASET: &str = "dataset.ron";
@@ -142,11 +141,8 @@ impl<'a> OpenDataset<'a> {
 
     fn checked(&self, file: &str, path: &str) -> Result<Source, Problem> {
         let refused = |fault| Err(Problem::new(self.index.place(path), fault));
-        let mut parts = Path::new(file).components();
-        if file.is_empty() || !parts.all(|part| matches!(part, Component::Normal(_))) {
-            return refused(Fault::Other(format!(
-                "{file} is not a plain file name inside the data folder; give the name of a file beside dataset.ron"
-            )));
+        if let Some(fault) = self.folder.leads_out(file) {
+            return refused(fault);
         }
         if !self.folder.contains(file) {
             let folder = self.folder.display("");

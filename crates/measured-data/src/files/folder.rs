@@ -130,6 +130,26 @@ impl Folder {
         names
     }
 
+    /// Why a name that stands in a file of this folder may not be read: it leads out of the folder, by itself or by a link.
+    /// None where it stays inside, or is not there.
+    pub(crate) fn leads_out(&self, file: &str) -> Option<Fault> {
+        let mut parts = Path::new(file).components();
+        if file.is_empty() || !parts.all(|part| matches!(part, Component::Normal(_))) {
+            return Some(Fault::Other(format!(
+                "{file} is not a plain file name inside the data folder; give the name of a file in it"
+            )));
+        }
+        let Self::Disk(folder) = self else { return None };
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let inside = folder.canonicalize().ok()?;
+        let target = folder.join(file).canonicalize().ok()?;
+        (!target.starts_with(&inside)).then(|| {
+            Fault::Other(format!(
+                "{file} is a link that leads out of the data folder; copy the file into it"
+            ))
+        })
+    }
+
     /// Whether a file exists in this folder.
     pub fn contains(&self, file: &str) -> bool {
         match self {
@@ -203,6 +223,44 @@ mod tests {
         assert_eq!(bench.read("dataset.ron").unwrap().text, "()");
         assert!(!bench.contains("none.csv"));
         assert!(matches!(bench.read("none.csv").unwrap_err().fault, Fault::NotShipped { .. }));
+    }
+
+    /// Names with `..`, absolute ones and links out of the folder are refused; links inside it are not.
+    #[test]
+    fn no_name_leads_out_of_its_folder() {
+        let place = tempfile::tempdir().unwrap();
+        let (data, secret) = (place.path().join("data"), place.path().join("secret.csv"));
+        crate::write_atomic(&secret, b"1").unwrap();
+        crate::write_atomic(&data.join("sub/own.csv"), b"1").unwrap();
+        let folder = Folder::Disk(data.clone());
+        for name in ["../secret.csv", "sub/../../secret.csv", "./sub/own.csv", "", "/", "sub/.."] {
+            let fault = folder.leads_out(name);
+            assert!(
+                matches!(&fault, Some(Fault::Other(m)) if m.contains("plain file name")),
+                "{name}: {fault:?}"
+            );
+        }
+        assert!(folder.leads_out(&secret.display().to_string()).is_some());
+        assert_eq!(folder.leads_out("sub/own.csv"), None);
+        assert_eq!(folder.leads_out("missing.csv"), None);
+        #[cfg(unix)]
+        {
+            let link = |to: &str, name: &str| {
+                std::os::unix::fs::symlink(to, data.join(name)).unwrap();
+            };
+            link("../secret.csv", "file.csv");
+            link("..", "up");
+            link("file.csv", "twice.csv");
+            link("sub/own.csv", "inside.csv");
+            for name in ["file.csv", "up/secret.csv", "twice.csv"] {
+                let fault = folder.leads_out(name);
+                assert!(
+                    matches!(&fault, Some(Fault::Other(m)) if m.contains("copy the file")),
+                    "{name}: {fault:?}"
+                );
+            }
+            assert_eq!(folder.leads_out("inside.csv"), None);
+        }
     }
 
     #[test]

@@ -166,8 +166,24 @@ fn data_folders_that_are_none() {
     place.hhc(&["identify", "nowhere", "-o", "a.ron"]).rejected(&["cannot be read"]);
     write_bench(&place, "bench");
     let dataset = place.read("bench/dataset.ron");
-    place.write("bench/dataset.ron", &dataset.replace("slow.csv", "../case.ron"));
-    place.hhc(&["check", "bench"]).rejected(&["is not a plain file name inside the data folder"]);
+    let absolute = place.path().join("case.ron").display().to_string();
+    for name in ["../case.ron", "sub/../../case.ron", &absolute] {
+        place.write("bench/dataset.ron", &dataset.replace("slow.csv", name));
+        let words = ["runs[0].file", "is not a plain file name inside the data folder"];
+        place.hhc(&["check", "bench"]).rejected(&words);
+    }
+    // so is a link, to a file or to a folder
+    #[cfg(unix)]
+    for (link, name) in [("../case.ron", "link.csv"), ("..", "up/case.ron")] {
+        let at = place.path().join("bench").join(name.split('/').next().unwrap());
+        std::os::unix::fs::symlink(link, at).unwrap();
+        place.write("bench/dataset.ron", &dataset.replace("slow.csv", name));
+        place.hhc(&["check", "bench"]).rejected(&[
+            "runs[0].file",
+            "a link that leads out",
+            "copy the file",
+        ]);
+    }
 }
 
 /// A case with one wrong value: `check` and `run` refuse it in the same words.

@@ -187,6 +187,11 @@ fn without_deviations_nothing_is_sure_and_faults_name_their_file() {
         &["effects[1].amount", "no effect"],
     );
     faulty("t/table.ron", &|t| t.replace("none", "zero"), &["zero"]);
+    faulty(
+        "t/table.ron",
+        &|t| t.replacen("amount:", "file: \"../t/effect_mass.csv\", amount:", 1),
+        &["effects[0].file", "is not a plain file name inside the data folder"],
+    );
     let missing = folder(NOMINAL, 6);
     missing.write("t/table.ron", "(effects: [(name: \"joint\", amount: 2)])");
     missing.hhc(&["diagnose", "--table", "t"]).rejected(&["effect_joint.csv"]);
