@@ -173,39 +173,3 @@ pub(super) const FORM_LEFT: f64 = 0.05;
 pub(super) const FORM_LEFT_OF_BAND: [f64; 2] = [0.12, 0.03];
 /// Relative error of the noise of a channel, taken from its differences.
 pub(super) const NOISE_DOUBT: f64 = 0.05;
-
-#[cfg(test)]
-mod tests {
-    /// One row for each constant of this file: name, value, the first sentence of its description.
-    fn table() -> String {
-        let mut rows = vec!["| number | value | meaning |\n|---|---|---|\n".to_owned()];
-        let mut description = String::new();
-        for line in include_str!("thresholds.rs").lines() {
-            if let Some(text) = line.strip_prefix("///") {
-                description += text;
-                continue;
-            }
-            let own = line.strip_prefix("pub(super) ").or_else(|| line.strip_prefix("pub(crate) "));
-            let constant = own.unwrap_or(line).strip_prefix("const ");
-            if let Some((name, rest)) = constant.and_then(|own| own.split_once(':')) {
-                let value =
-                    rest.split_once('=').map_or("", |own| own.1).trim().trim_end_matches(';');
-                let meaning = description.trim().split(". ").next().unwrap_or_default();
-                let meaning = meaning.trim_end_matches('.');
-                rows.push(format!("| `{name}` | {value} | {meaning} |\n"));
-            }
-            description.clear();
-        }
-        rows.concat()
-    }
-
-    #[test]
-    fn the_book_lists_the_numbers_as_they_are() {
-        let page = include_str!("../../../../docs/src/theory/discovery.md");
-        assert!(
-            page.contains(&table()),
-            "the table of docs/src/theory/discovery.md must be:\n{}",
-            table()
-        );
-    }
-}

@@ -7,4 +7,5 @@ mod names;
 mod points;
 mod refusals;
 mod tables;
+mod thresholds;
 mod toy;
