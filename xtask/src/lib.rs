@@ -15,6 +15,7 @@
 //! | `case-studies` | diagnoses measured points, writes figures and numbers of the pages on them | [`case_studies`] |
 //! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
 //! | `fuzz` | gives every reader mutated bytes: an error or a value, never a panic | [`fuzz`] |
+//! | `packages`, `data-licences` | packages that stand alone; source and licence of every folder of data | [`release`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
 //! Exit codes: 0 done, 1 physics or numerics failed, 2 bad input or broken rule, 3 a comparison
@@ -42,6 +43,7 @@ pub mod layers;
 pub mod point_sets;
 pub mod refinement;
 pub mod regress;
+pub mod release;
 pub mod rooms;
 pub mod tidy;
 pub mod validate;

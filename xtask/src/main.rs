@@ -13,8 +13,8 @@ use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, case_studies, ci, dependencies, dynamic_stall, everyday_errors,
-    files, fuzz, hidden_effects, hover_refinement, layers, point_sets, refinement, regress, rooms,
-    tidy, validate, wake_control, wake_inflow, wake_refinement, workspace,
+    files, fuzz, hidden_effects, hover_refinement, layers, point_sets, refinement,
+    regress, release, rooms, tidy, validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
 /// Chores of the project.
@@ -106,6 +106,18 @@ enum Chore {
         /// Seed of the changes
         #[arg(long, default_value_t = 1)]
         seed: u64,
+    },
+    /// Package all that is published and look whether each package has what it includes
+    Packages {
+        /// Install hhc from the packages alone, and run it outside of the repository
+        #[arg(long)]
+        install: bool,
+    },
+    /// Write docs/src/data-licences.md from what every folder of data says
+    DataLicences {
+        /// Write nothing; fail if the page is stale
+        #[arg(long)]
+        check: bool,
     },
     /// Run .ci/run: everything a change must pass
     Ci,
@@ -263,6 +275,32 @@ fn fuzz_readers(seconds: u64, seed: u64) -> Result<ExitCode, XtaskError> {
     Ok(if panicked { ExitCode::from(3) } else { ExitCode::SUCCESS })
 }
 
+fn packages(root: &Path, install: bool) -> Result<ExitCode, XtaskError> {
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
+    let packed = release::packages::check(root, &root.join(target), install)?;
+    let summary = format!(
+        "{}\n{} packages, {} KB, {} faults\n",
+        packed.steps.join("\n"),
+        packed.names.len(),
+        packed.bytes / 1024,
+        packed.faults.len()
+    );
+    Ok(verdict(&packed.faults, &summary))
+}
+
+fn data_licences(root: &Path, check: bool) -> Result<ExitCode, XtaskError> {
+    let (page, mut faults) = release::data_licences::fresh(root)?;
+    let path = root.join(release::data_licences::PAGE);
+    if check {
+        let is_stale = files::read(&path).unwrap_or_default() != page;
+        faults.extend(is_stale.then(|| format!("{}: stale", release::data_licences::PAGE)));
+    } else if faults.is_empty() {
+        files::write_atomically(&path, &page)?;
+    }
+    Ok(verdict(&faults, &format!("{} faults\n", faults.len())))
+}
+
 /// What the choices of the free wake do.
 fn wake_tables() -> Result<ExitCode, XtaskError> {
     let line = |line: &str| say(&mut std::io::stdout(), line);
@@ -340,6 +378,8 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             Ok(ExitCode::SUCCESS)
         }
         Chore::Fuzz { seconds, seed } => fuzz_readers(seconds, seed),
+        Chore::Packages { install } => packages(root, install),
+        Chore::DataLicences { check } => data_licences(root, check),
         Chore::Refinement => {
             say(&mut std::io::stdout(), &refinement::table()?);
             Ok(ExitCode::SUCCESS)

@@ -42,7 +42,7 @@ mod terminal;
 pub use error::SimError;
 pub use measured_data::problem;
 
-/// Version of the program, part of every result and its key.
+/// Version of the program, part of every result; its key has that of the model, [`rotor_study::MODEL_VERSION`].
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The example of the crate's README, run as a documentation test.

@@ -5,6 +5,7 @@ mod command;
 mod dependencies;
 mod fuzz;
 mod goldens;
+mod release;
 mod rooms;
 mod rules;
 mod validation;

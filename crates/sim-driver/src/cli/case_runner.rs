@@ -95,7 +95,7 @@ impl Runner for CaseRunner {
     type Case = LoadedCase;
 
     fn version(&self) -> &'static str {
-        crate::VERSION
+        rotor_study::MODEL_VERSION
     }
 
     fn read(&self, text: &str) -> Result<ReadCase<LoadedCase>, Problems> {

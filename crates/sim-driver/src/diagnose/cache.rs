@@ -24,7 +24,7 @@ impl StructureStore for FolderStore<'_> {
 /// Name of a file of structures: everything they depend on goes into the hash.
 fn key(parts: &[&[f64]]) -> String {
     let mut hash = blake3::Hasher::new();
-    hash.update(crate::VERSION.as_bytes());
+    hash.update(rotor_study::MODEL_VERSION.as_bytes());
     for part in parts {
         hash.update(&(size_of_val(*part) as u64).to_le_bytes());
         for value in *part {

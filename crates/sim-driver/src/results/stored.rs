@@ -25,7 +25,7 @@ const OLD_STUDY_FILE: &str = "study.json";
 pub struct StoredResult {
     /// Program and version.
     pub program: String,
-    /// blake3 of version, canonical case and input data: equal keys mean equal results.
+    /// blake3 of model version, canonical case and input data: equal keys mean equal results.
     pub key: String,
     /// blake3 of each input beside the case: actuator or bench data, measured files, aerofoil tables.
     pub inputs: Vec<String>,
@@ -168,7 +168,7 @@ fn check_hash(source: &Source) -> Result<(), SimError> {
     })
 }
 
-/// blake3 of program version, canonical case and input hashes.
+/// blake3 of model version, canonical case and input hashes.
 ///
 /// The canonical case is the case file with its defaults filled in, so comments, order and layout of
 /// the user's file do not matter.
@@ -177,7 +177,7 @@ fn check_hash(source: &Source) -> Result<(), SimError> {
 /// [`SimError::Data`] for a case RON cannot express.
 fn result_key(case: &Case, inputs: &[String]) -> Result<String, SimError> {
     let canonical = ron_text(case).map_err(|e| SimError::not_written("case", &e))?;
-    Ok(case_key(crate::VERSION, &canonical, inputs))
+    Ok(case_key(rotor_study::MODEL_VERSION, &canonical, inputs))
 }
 
 #[cfg(test)]
@@ -196,6 +196,12 @@ mod tests {
         assert_eq!(base.len(), 64);
         assert_eq!(base, key(&file.clone(), &["a", "b"]));
         assert_ne!(base, key(&file, &["ab"]), "inputs are kept apart");
+        // that of the model, which is more than that of the program
+        let of_version = |version: &str| {
+            case_key(version, &ron_text(&file).unwrap(), &["a".to_owned(), "b".to_owned()])
+        };
+        assert_eq!(base, of_version(rotor_study::MODEL_VERSION));
+        assert_ne!(base, of_version(crate::VERSION));
         let moved = Case { advance_ratio: file.advance_ratio + 1e-12, ..file };
         assert_ne!(base, key(&moved, &["a", "b"]));
     }
