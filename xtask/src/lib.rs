@@ -14,7 +14,8 @@
 //! | `hidden-effects --kind rotor`, `blade`, `section` | the same on points of an independent rotor, blade or section | [`point_sets`] |
 //! | `case-studies` | diagnoses measured points, writes figures and numbers of the pages on them | [`case_studies`] |
 //! | `bench` | measures hot paths, commands and growth, writes the speed page of the book | [`mod@bench`] |
-//! | `fuzz` | gives every reader mutated bytes: an error or a value, never a panic | [`fuzz`] |
+//! | `fuzz` | gives every reader changed inputs: an error or a value, never a panic | [`fuzz`] |
+//! | `kills`, `memory` | kills the program, fills its disks; measures its memory over many cases | [`hardness`] |
 //! | `packages`, `data-licences` | packages that stand alone; source and licence of every folder of data | [`release`] |
 //! | `ci` | runs `.ci/run`, the gate of every change | [`ci`] |
 //!
@@ -37,6 +38,7 @@ mod error;
 pub mod everyday_errors;
 pub mod files;
 pub mod fuzz;
+pub mod hardness;
 pub mod hidden_effects;
 pub mod hover_refinement;
 pub mod layers;

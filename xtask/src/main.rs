@@ -13,7 +13,7 @@ use xtask::bench::samples::Patience;
 use xtask::diagnosis::Options;
 use xtask::{
     XtaskError, bench, calibrate, case_studies, ci, dependencies, dynamic_stall, everyday_errors,
-    files, fuzz, hidden_effects, hover_refinement, layers, point_sets, refinement,
+    files, fuzz, hardness, hidden_effects, hover_refinement, layers, point_sets, refinement,
     regress, release, rooms, tidy, validate, wake_control, wake_inflow, wake_refinement, workspace,
 };
 
@@ -98,14 +98,28 @@ enum Chore {
     DynamicStall(Stall),
     /// Diagnose the measured points of the case studies, and write their figures and numbers
     CaseStudies(Studies),
-    /// Give every reader of files mutated bytes; a panic is exit code 3, its input is stored
-    Fuzz {
-        /// For how long, s
-        #[arg(long, default_value_t = 60)]
-        seconds: u64,
-        /// Seed of the changes
+    /// Give every reader of files changed inputs; a panic is exit code 3, its input is stored
+    Fuzz(Fuzzing),
+    /// Kill a sweep and studies at random moments, fill their disks; what must not be is exit code 3
+    Kills {
+        /// The program that is killed
+        #[arg(long, value_name = "PROGRAM")]
+        program: PathBuf,
+        /// Kills of the sweep and of the study; a tenth of them of the paper's study
+        #[arg(short = 'n', long, default_value_t = 50)]
+        kills: usize,
+        /// Seed of the moments
         #[arg(long, default_value_t = 1)]
         seed: u64,
+    },
+    /// Measure the memory of a process over the cases of a sweep; growth is exit code 3
+    Memory {
+        /// The program
+        #[arg(long, value_name = "PROGRAM")]
+        program: PathBuf,
+        /// Cases
+        #[arg(long, default_value_t = 1000)]
+        cases: usize,
     },
     /// Package all that is published and look whether each package has what it includes
     Packages {
@@ -187,6 +201,34 @@ impl Suite {
 }
 
 #[derive(clap::Args)]
+struct Fuzzing {
+    /// For how long at most, s
+    #[arg(long, default_value_t = 60)]
+    seconds: u64,
+    /// Inputs of all readers at which the run ends, those of its earlier parts included
+    #[arg(long, default_value_t = u64::MAX, hide_default_value = true)]
+    inputs: u64,
+    /// Threads
+    #[arg(long, default_value_t = 2)]
+    threads: usize,
+    /// Seed of the changes
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// File that says how far the run is; left out, target/fuzz/seed-N.json
+    #[arg(long, value_name = "FILE")]
+    state: Option<PathBuf>,
+    /// Forget earlier parts of the run
+    #[arg(long)]
+    fresh: bool,
+    /// Give one stored input to a reader instead
+    #[arg(long, value_name = "FILE", requires = "reader")]
+    replay: Option<PathBuf>,
+    /// That reader
+    #[arg(long)]
+    reader: Option<String>,
+}
+
+#[derive(clap::Args)]
 struct Stall {
     /// Folder of the loops
     #[arg(long, value_name = "DIR")]
@@ -257,22 +299,68 @@ fn main() -> ExitCode {
     }
 }
 
-/// Shows what became of the inputs, and stores the one at which a reader panicked.
-fn fuzz_readers(seconds: u64, seed: u64) -> Result<ExitCode, XtaskError> {
-    let tallies = fuzz::fuzz(&workspace::root(), Duration::from_secs(seconds), seed)?;
+/// Shows what became of the inputs, and stores those at which a reader panicked or was slow.
+fn fuzz_readers(root: &Path, asked: Fuzzing) -> Result<ExitCode, XtaskError> {
+    let Fuzzing { seconds, inputs, threads, seed, state, fresh, replay, reader } = asked;
+    if let Some((file, reader)) = replay.zip(reader) {
+        let found = fuzz::replay(root, &reader, &files::read_bytes(&file)?)?;
+        let said = found.map_or_else(
+            || format!("there is no reader {reader}\n"),
+            |(taken, s)| format!("{} in {s:.3} s\n", if taken { "taken" } else { "refused" }),
+        );
+        say(&mut std::io::stdout(), &said);
+        return Ok(ExitCode::from(if found.is_some() { 0 } else { 2 }));
+    }
+    let folder = root.join("target/fuzz");
+    let state = state.unwrap_or_else(|| folder.join(format!("seed-{seed}.json")));
+    if fresh && state.exists() {
+        std::fs::remove_file(&state)
+            .map_err(|source| XtaskError::Write { path: state.clone(), source })?;
+    }
+    let options = fuzz::Options {
+        budget: Duration::from_secs(seconds),
+        most_inputs: inputs,
+        seed,
+        threads,
+        state: Some(state),
+    };
+    let tallies = fuzz::fuzz(root, &options)?;
     for tally in &tallies {
         say(&mut std::io::stdout(), &format!("{tally}\n"));
-        if let Some(input) = &tally.panicked {
-            let name = tally.reader.replace(' ', "_");
-            let path = workspace::root().join("target/fuzz").join(name);
+        let name = tally.reader.replace(' ', "_");
+        for (input, name) in [(&tally.panicked, name.clone()), (&tally.slow, name + ".slow")] {
+            let Some(input) = input else { continue };
+            let path = folder.join(name);
             sim_driver::files::write_atomic(&path, input).map_err(sim_driver::SimError::from)?;
             say(&mut std::io::stdout(), &format!("  its input is in {}\n", path.display()));
         }
     }
     let inputs: u64 = tallies.iter().map(|tally| tally.inputs).sum();
-    say(&mut std::io::stdout(), &format!("{inputs} inputs\n"));
+    let time_s: f64 = tallies.iter().map(|tally| tally.spent_s).sum();
+    let per_s = inputs as f64 / time_s.max(1e-9);
+    say(
+        &mut std::io::stdout(),
+        &format!("{inputs} inputs in {time_s:.0} s of all threads, {per_s:.0} per s and thread\n"),
+    );
     let panicked = tallies.iter().any(|tally| tally.panicked.is_some());
     Ok(if panicked { ExitCode::from(3) } else { ExitCode::SUCCESS })
+}
+
+/// What a program stands: kills, then disks without space.
+fn kill_program(program: &Path, kills: usize, seed: u64) -> Result<ExitCode, XtaskError> {
+    let killed = hardness::kills::kill(program, kills, seed)?;
+    let disks = hardness::disks::fill(program)?;
+    let lines = killed.iter().map(ToString::to_string).chain(disks.iter().map(ToString::to_string));
+    let lines: Vec<String> = lines.map(|line| line + "\n").collect();
+    let faults = killed.iter().flat_map(|own| &own.faults);
+    let faults: Vec<&String> = faults.chain(disks.iter().flat_map(|own| &own.faults)).collect();
+    Ok(compared(&faults, &lines.concat()))
+}
+
+fn memory(program: &Path, cases: usize) -> Result<ExitCode, XtaskError> {
+    let found = hardness::memory::measure(program, cases)?;
+    let faults: &[&str] = if found.is_flat() { &[] } else { &["memory grows with the cases"] };
+    Ok(compared(faults, &format!("{found}\n")))
 }
 
 fn packages(root: &Path, install: bool) -> Result<ExitCode, XtaskError> {
@@ -377,7 +465,9 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             say(&mut std::io::stdout(), &format!("written: {}\n", calibrate::TABLE));
             Ok(ExitCode::SUCCESS)
         }
-        Chore::Fuzz { seconds, seed } => fuzz_readers(seconds, seed),
+        Chore::Fuzz(asked) => fuzz_readers(root, asked),
+        Chore::Kills { program, kills, seed } => kill_program(&program, kills, seed),
+        Chore::Memory { program, cases } => memory(&program, cases),
         Chore::Packages { install } => packages(root, install),
         Chore::DataLicences { check } => data_licences(root, check),
         Chore::Refinement => {
@@ -412,6 +502,13 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         }
         Chore::Ci => ci::run(root),
     }
+}
+
+/// Prints summary and faults; what was found otherwise than expected is a failed comparison.
+fn compared<F: std::fmt::Display>(faults: &[F], summary: &str) -> ExitCode {
+    let lines: Vec<String> = faults.iter().map(|fault| format!("{fault}\n")).collect();
+    say(&mut std::io::stdout(), &format!("{summary}{}{} faults\n", lines.concat(), faults.len()));
+    if faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(3) }
 }
 
 /// Prints faults and summary; a broken rule is bad input.

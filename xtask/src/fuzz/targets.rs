@@ -2,14 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use bench_study::stored::read_actuator;
 use case_sweep::{StoredCase, read_sweep_file};
-use sim_driver::case::read_case;
+use rotor_gap::read_table;
+use sim_driver::case::{load_case, read_case};
 use sim_driver::files::{Folder, Source, read_airfoil, read_dataset};
 use sim_driver::import::{ColumnOptions, ImportRequest, SourceKind, import};
 use sim_driver::results::{StoredResult, figures};
 
+use super::bytes::Form;
 use crate::XtaskError;
-use crate::files::read_bytes;
+use crate::files::{in_folder, read, read_bytes, write_atomically};
 
 /// Whether a reader takes an input.
 type Read = Box<dyn Fn(&[u8]) -> bool>;
@@ -18,6 +21,8 @@ type Read = Box<dyn Fn(&[u8]) -> bool>;
 pub(super) struct Target {
     /// Its name.
     pub(super) reader: &'static str,
+    /// What its inputs are made of.
+    pub(super) form: Form,
     /// Valid inputs.
     pub(super) valid: Vec<Vec<u8>>,
     /// Gives it an input; whether it was taken.
@@ -30,6 +35,37 @@ const FORC: &str = "MicroMag 2900/3900 Data File (Series 0015)\nUnits of measure
 1000,1e-3\n\n200,0\n300,1e-4\n400,2e-4\n\n1000,1.001e-3\n\n100,0\n200,1e-4\n300,2e-4\n
 1000,1.002e-3\n\n0,0\n100,1e-4\n200,2e-4\n\nMicroMag 2900/3900 Data File ends\n";
 
+/// Actuators with laws of their own.
+const ACTUATORS: [&str; 2] = [
+    "(kind: Actuator, title: \"by hand\", model: (law: BoucWen(range_volt: (-20, 150), gain_deg_per_volt: 0.12, \
+     half_height_deg: 0.9, rise_volt: 30, sigma: 0.8, exponent: 2), range_volt: (-20, 150), \
+     calibration: (deg_per_um: 0.04, zero_um: 0)))",
+    "(kind: Actuator, title: \"by hand\", channels: Some((input: \"current_A\", output: \"force_N\")), \
+     model: (law: Linear(gain_deg_per_volt: -0.1, bias_volt: 0), range_volt: (0, 1), \
+     calibration: (deg_per_um: 1, zero_um: 0)))",
+];
+
+/// A folder of anyone's simulator.
+const TABLE: [(&str, &str); 4] = [
+    (
+        "measured.csv",
+        "point,frequency_Hz,x1_um,x1_um_sd,x2_um,x2_um_sd\na,1,10.2,0.1,5.1,0.1\nb,2,8.1,0.1,4.4,0.1\nc,3,6.3,0.1,,\n",
+    ),
+    ("predicted.csv", "point,frequency_Hz,x1_um,x2_um\na,1,10,5\nb,2,8,4.3\nc,3,6,3.5\n"),
+    (
+        "effect_spring.csv",
+        "point,frequency_Hz,x1_um,x2_um\na,1,10.5,5.1\nb,2,8.2,4.5\nc,3,6.4,3.6\n",
+    ),
+    (
+        "table.ron",
+        "(title: \"t\", effects: [(name: \"spring\", amount: 1.05, none: 1.0, range: (0.5, 2.0), parameter: \"ratio\", unit: \"1\", physics: \"stiff\", form_error_percent: 4)], conditions: [\"frequency_Hz\"], gain_percent: 0.5, accuracy: [(channel: \"x1_um\", gain_percent: 2.0, zero: 5.0)])",
+    ),
+];
+
+/// Rows of a sweep.
+const ROWS: &str =
+    "advance_ratio,rotor.gj,inflow.model\n0.2,0.005,Drees\n0.3,0.006,\"FreeWake(preset: Fast)\"\n";
+
 /// Most bytes of an input: a part of a long file is as good.
 const MOST_BYTES: usize = 40_000;
 
@@ -38,11 +74,15 @@ fn text(bytes: &[u8]) -> Source {
 }
 
 fn bytes_of(path: &Path) -> Result<Vec<u8>, XtaskError> {
+    start_of(path, MOST_BYTES)
+}
+
+/// At most so many bytes from the start of a file.
+fn start_of(path: &Path, most: usize) -> Result<Vec<u8>, XtaskError> {
     let mut bytes = read_bytes(path)?;
-    if bytes.len() > MOST_BYTES {
+    if bytes.len() > most {
         // whole lines
-        let end =
-            bytes[..MOST_BYTES].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
+        let end = bytes[..most].iter().rposition(|byte| *byte == b'\n').map_or(0, |at| at + 1);
         bytes.truncate(end);
     }
     Ok(bytes)
@@ -56,17 +96,32 @@ fn on_disk(path: PathBuf, read: impl Fn() -> bool + 'static) -> Read {
 
 /// All readers; those of files have a folder below `place`.
 pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
+    let mut targets = of_texts(root)?;
+    targets.extend(of_folders(root, place)?);
+    targets.extend(of_imports(&root.join("fixtures"), place)?);
+    Ok(targets)
+}
+
+/// The readers of a text.
+fn of_texts(root: &Path) -> Result<Vec<Target>, XtaskError> {
     let fixtures = root.join("fixtures");
     let all = |names: &[&str]| -> Result<Vec<Vec<u8>>, XtaskError> {
         names.iter().map(|name| bytes_of(&fixtures.join(name))).collect()
     };
+    let book = read(&root.join("docs/src/case-format.md"))?;
+    let every_stage = book.split_once("<!-- every stage -->").and_then(|(_, rest)| {
+        Some(rest.split_once("```text\n")?.1.split_once("```")?.0.as_bytes().to_vec())
+    });
+    let actuators: Vec<Vec<u8>> =
+        every_stage.into_iter().chain(ACTUATORS.map(|text| text.as_bytes().to_vec())).collect();
     let cases = Folder::Disk(fixtures.join("cases"));
     let earlier = root.join("crates/sim-driver/tests/data/earlier_result/result.json");
     let sweep = b"(base: \"c.ron\", axes: [(field: \"a.b[0]\", values: [1, X(y: 2), [3]]), (field: \"x\", from: 1, to: 2, count: 3)], sampling: LatinHypercube(count: 9, seed: 1))";
     let stored = b"\"version\":\"1\",\"inputs\":[\"a\"],\"case\":\"(x: 1)\",\"outcome\":{\"found\":{\"columns\":[[\"a_deg\",1.5e-3],[\"b\",\"w\"],[\"c\",null]],\"warnings\":[]}}}\n";
-    let mut targets = vec![
+    Ok(vec![
         Target {
             reader: "case",
+            form: Form::Nested,
             valid: all(&[
                 "cases/paper_mu030.ron",
                 "cases/stalled_mu030.ron",
@@ -77,6 +132,7 @@ pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskErr
         },
         Target {
             reader: "sweep file",
+            form: Form::Nested,
             valid: vec![sweep.to_vec(), b"(base: \"c.ron\", rows: \"r.csv\")".to_vec()],
             read: Box::new(|bytes| {
                 read_sweep_file(&text(bytes), &Folder::Disk("no-such-folder".into())).is_ok()
@@ -84,6 +140,7 @@ pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskErr
         },
         Target {
             reader: "stored case",
+            form: Form::Nested,
             valid: vec![stored.to_vec()],
             // the hash is made to fit, or the rest would never be read
             read: Box::new(|bytes| {
@@ -95,6 +152,7 @@ pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskErr
         },
         Target {
             reader: "result",
+            form: Form::Nested,
             valid: vec![bytes_of(&earlier)?],
             // beyond the hash, which refuses all of them
             read: Box::new(|bytes| {
@@ -108,44 +166,113 @@ pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskErr
         },
         Target {
             reader: "C81",
+            form: Form::Fixed,
             valid: all(&["airfoils/naca0012_synthetic.c81"])?,
             read: Box::new(|bytes| read_airfoil(&text(bytes)).is_ok()),
         },
-    ];
-    for (reader, of, own) in [
-        ("dataset.ron", "points/ignored_hysteresis", "dataset.ron"),
-        ("points CSV", "points/stall_naca0012", "points.csv"),
-        ("loops", "measured/friction_damper", "dataset.ron"),
-        ("record CSV", "bench/apa500l_synthetic", RECORD),
+        Target {
+            reader: "actuator",
+            form: Form::Nested,
+            valid: actuators,
+            read: Box::new(|bytes| read_actuator(&text(bytes)).is_ok()),
+        },
+    ])
+}
+
+/// The readers of folders: one file of each is changed.
+fn of_folders(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
+    let fixtures = root.join("fixtures");
+    let mut targets = Vec::new();
+    for (reader, form, of, own) in [
+        ("dataset.ron", Form::Nested, "points/ignored_hysteresis", "dataset.ron"),
+        ("points CSV", Form::Table, "points/stall_naca0012", "points.csv"),
+        ("loops", Form::Nested, "measured/friction_damper", "dataset.ron"),
+        ("record CSV", Form::Table, "bench/apa500l_synthetic", RECORD),
     ] {
         let folder = place.join(reader.replace(' ', "_"));
         copy(&fixtures.join(of), &folder, own)?;
         let data = Folder::Disk(folder.clone());
         targets.push(Target {
             reader,
-            valid: vec![bytes_of(&fixtures.join(of).join(own))?],
+            form,
+            valid: vec![start_of(
+                &fixtures.join(of).join(own),
+                if own == RECORD { 12_000 } else { MOST_BYTES },
+            )?],
             read: on_disk(folder.join(own), move || read_dataset(&data).is_ok()),
         });
     }
-    let record = bytes_of(&fixtures.join("bench/apa500l_synthetic").join(RECORD))?;
-    let mat = bytes_of(&fixtures.join("mat/bench_struct.mat"))?;
-    let tdms = bytes_of(&fixtures.join("instruments/labview_tdms.tdms"))?;
-    let workbook = bytes_of(&fixtures.join("instruments/excel_xlsx.xlsx"))?;
-    let oscilloscope = bytes_of(&fixtures.join("instruments/tek_mso5.csv"))?;
-    for (reader, source, valid) in [
-        ("import CSV", SourceKind::Csv, record),
-        ("import preamble", SourceKind::Csv, oscilloscope),
-        ("import workbook", SourceKind::Csv, workbook),
-        ("import TDMS", SourceKind::Tdms, tdms),
-        ("import MAT", SourceKind::Mat, mat),
-        ("import FORC", SourceKind::MicromagForc, FORC.into()),
+    for (reader, form, own) in
+        [("table.ron", Form::Nested, "table.ron"), ("table CSV", Form::Table, "measured.csv")]
+    {
+        let folder = place.join(reader.replace(' ', "_"));
+        for (name, text) in TABLE {
+            write_atomically(&folder.join(name), text)?;
+        }
+        let valid = TABLE.iter().filter(|(name, _)| *name == own);
+        let data = Folder::Disk(folder.clone());
+        targets.push(Target {
+            reader,
+            form,
+            valid: valid.map(|(_, text)| text.as_bytes().to_vec()).collect(),
+            read: on_disk(folder.join(own), move || read_table(&data).is_ok()),
+        });
+    }
+    let (folder, own) = (place.join("sweep_rows"), "rows.csv");
+    write_atomically(&folder.join(own), ROWS)?;
+    let rows = Folder::Disk(folder.clone());
+    let sweep = text(b"(base: \"c.ron\", rows: \"rows.csv\")");
+    targets.push(Target {
+        reader: "sweep rows",
+        form: Form::Table,
+        valid: vec![ROWS.as_bytes().to_vec()],
+        read: on_disk(folder.join(own), move || read_sweep_file(&sweep, &rows).is_ok()),
+    });
+    let (folder, measured) = (place.join("measured"), fixtures.join("measured/hart_ii"));
+    copy(&measured, &folder.join("measured/hart_ii"), "")?;
+    let case = folder.join("cases/hart_ii_mn.ron");
+    write_atomically(&case, &read(&fixtures.join("cases/hart_ii_mn.ron"))?)?;
+    let own = "airloads_087r_harmonics.csv";
+    targets.push(Target {
+        reader: "measured airloads",
+        form: Form::Table,
+        valid: vec![bytes_of(&measured.join(own))?],
+        read: on_disk(folder.join("measured/hart_ii").join(own), move || load_case(&case).is_ok()),
+    });
+    Ok(targets)
+}
+
+/// The importers, with what instruments and programs write.
+fn of_imports(fixtures: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
+    let of_ending = |endings: &[&str]| -> Result<Vec<Vec<u8>>, XtaskError> {
+        let is_one = |path: &PathBuf| {
+            let ending = path.extension().unwrap_or_default().to_string_lossy().into_owned();
+            endings.contains(&ending.as_str())
+        };
+        let files = in_folder(&fixtures.join("instruments"))?;
+        files.iter().filter(|path| is_one(path)).map(|path| bytes_of(path)).collect()
+    };
+    let mat =
+        [vec![bytes_of(&fixtures.join("mat/bench_struct.mat"))?], of_ending(&["mat"])?].concat();
+    let record = vec![bytes_of(&fixtures.join("bench/apa500l_synthetic").join(RECORD))?];
+    let mut targets = Vec::new();
+    for (reader, form, source, valid) in [
+        ("import CSV", Form::Table, SourceKind::Csv, [record, of_ending(&["csv"])?].concat()),
+        ("import text", Form::Table, SourceKind::Csv, of_ending(&["txt", "asc", "lvm", "dat"])?),
+        ("import gzip", Form::Gzip, SourceKind::Csv, of_ending(&["gz"])?),
+        ("import others", Form::Binary, SourceKind::Csv, of_ending(&["npy", "h5", "json"])?),
+        ("import workbook", Form::Zip, SourceKind::Csv, of_ending(&["xlsx"])?),
+        ("import TDMS", Form::Binary, SourceKind::Tdms, of_ending(&["tdms"])?),
+        ("import MAT", Form::Mat, SourceKind::Mat, mat),
+        ("import FORC", Form::Table, SourceKind::MicromagForc, vec![FORC.into()]),
     ] {
         let file = place.join(reader.replace(' ', "_"));
         let out = place.join(format!("{}_out", reader.replace(' ', "_")));
         let request = request(&file, &out, source);
         targets.push(Target {
             reader,
-            valid: vec![valid],
+            form,
+            valid,
             read: on_disk(file, move || {
                 let taken = import(&request).is_ok();
                 // the next one writes there anew

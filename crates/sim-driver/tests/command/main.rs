@@ -11,6 +11,7 @@ mod diagnosis_page;
 mod disk;
 mod export;
 mod fly;
+mod hardness;
 mod identify;
 mod identify_page;
 mod import;

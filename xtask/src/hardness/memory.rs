@@ -1,0 +1,117 @@
+//! Memory of one process over many cases.
+
+use std::path::Path;
+use std::time::Duration;
+
+use super::place::Place;
+use crate::{XtaskError, files};
+
+/// Growth from the first to the last tenth that is no growth: share and MB. An allocator keeps some of what it was given.
+const SHARE: f64 = 0.1;
+const SLACK_MB: f64 = 2.0;
+
+/// Memory over the cases of a sweep.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Memory {
+    /// Cases of the sweep.
+    pub cases: usize,
+    /// Largest resident memory seen in each tenth of the cases, MB; none where a tenth was over before it was looked at.
+    pub tenths_mb: Vec<Option<f64>>,
+    /// Largest resident memory of the process, MB.
+    pub peak_mb: f64,
+}
+
+impl Memory {
+    /// Growth from the second tenth, when all is set up, to the last one, MB.
+    pub fn growth_mb(&self) -> Option<f64> {
+        let first = self.tenths_mb.iter().skip(1).flatten().next()?;
+        Some(self.tenths_mb.last().copied().flatten()? - first)
+    }
+
+    /// Whether it does not grow with the cases.
+    pub fn is_flat(&self) -> bool {
+        let first = self.tenths_mb.iter().skip(1).flatten().next();
+        let bound = first.map(|first| SHARE * first + SLACK_MB);
+        self.growth_mb().zip(bound).is_some_and(|(growth, bound)| growth <= bound)
+    }
+}
+
+impl std::fmt::Display for Memory {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let tenths = self.tenths_mb.iter();
+        let shown: Vec<String> =
+            tenths.map(|mb| mb.map_or("-".to_owned(), |mb| format!("{mb:.1}"))).collect();
+        write!(
+            f,
+            "{} cases, resident MB by tenths of them: {}; at most {:.1}; growth {}",
+            self.cases,
+            shown.join(", "),
+            self.peak_mb,
+            self.growth_mb().map_or("unknown".to_owned(), |mb| format!("{mb:+.1} MB"))
+        )
+    }
+}
+
+/// The figure of a field of `/proc/PID/status` in MB.
+fn field_mb(status: &str, field: &str) -> Option<f64> {
+    let line = status.lines().find_map(|line| line.strip_prefix(field)?.strip_prefix(':'))?;
+    line.split_whitespace().next()?.parse::<f64>().ok().map(|kb| kb / 1024.0)
+}
+
+/// Runs a sweep of small cases on one thread and looks at the memory of the process.
+///
+/// # Errors
+/// [`XtaskError`] if the program cannot be run, or the sweep fails.
+pub fn measure(program: &Path, cases: usize) -> Result<Memory, XtaskError> {
+    let place = Place::new(program)?;
+    place.write(
+        "sweep.ron",
+        &format!("(base: \"case.ron\", axes: [(field: \"rotor.gj\", from: 0.005, to: 0.007, count: {cases})])"),
+    )?;
+    let mut child = place.spawn(&["sweep", "run", "sweep.ron", "--out", "out"])?;
+    let status = format!("/proc/{}/status", child.id());
+    let mut memory = Memory { cases, tenths_mb: vec![None; 10], peak_mb: 0.0 };
+    let failed = |source| XtaskError::Start { program: "hhc sweep run".to_owned(), source };
+    let ended = loop {
+        if let Some(ended) = child.try_wait().map_err(failed)? {
+            break ended;
+        }
+        let text = files::read(Path::new(&status)).unwrap_or_default();
+        let done = results(&place);
+        if let Some(mb) = field_mb(&text, "VmRSS") {
+            let tenth = &mut memory.tenths_mb[(10 * done / cases.max(1)).min(9)];
+            *tenth = Some(tenth.map_or(mb, |before| before.max(mb)));
+        }
+        memory.peak_mb = field_mb(&text, "VmHWM").unwrap_or_default().max(memory.peak_mb);
+        std::thread::sleep(Duration::from_millis(50));
+    };
+    if !ended.success() {
+        let said = format!("ended with {ended}");
+        return Err(XtaskError::Refused { program: "hhc sweep run".to_owned(), said });
+    }
+    Ok(memory)
+}
+
+/// Results that are there.
+fn results(place: &Place) -> usize {
+    let folders = files::in_folder(&place.path().join("out/results")).unwrap_or_default();
+    folders.iter().map(|folder| files::in_folder(folder).map_or(0, |inside| inside.len())).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_leak_is_told_from_a_flat_memory() {
+        let of = |tenths: &[f64]| Memory {
+            tenths_mb: tenths.iter().map(|mb| Some(*mb)).collect(),
+            ..Memory::default()
+        };
+        assert!(of(&[5.0, 20.0, 21.0, 20.5]).is_flat());
+        // what grows in the first tenth is set up, what grows behind it is a leak
+        assert!(!of(&[5.0, 20.0, 23.0, 26.0]).is_flat());
+        assert!(!Memory::default().is_flat(), "nothing seen is no proof");
+        assert_eq!(field_mb("Name: a\nVmHWM:\t  2048 kB\n", "VmHWM"), Some(2.0));
+    }
+}
