@@ -9,6 +9,7 @@
 //! - *Failures* ([`failures_of_case`]): what control reaches when a flap or an actuator of one blade, or a load cell, fails.
 //! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
 //!   ([`controllers_of_case`]); T that comes back ([`handed_t`]); the rotor as state space ([`state_space_of_case`]).
+//! - *Wake in time* ([`wake_in_time`]): rotor and free wake marched together where no wake is periodic; means and their intervals.
 //!
 //! Values in, values out: no file, no terminal.
 
@@ -24,6 +25,8 @@ mod path;
 mod pilot;
 mod state_space;
 mod tables;
+mod wake_in_time;
+mod wake_in_time_text;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
@@ -37,6 +40,8 @@ pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 pub use state_space::state_space_of_case;
 pub use tables::{failures_csv, flight_csv, load_amplitudes};
+pub use wake_in_time::{FoundInTime, InTimeQuestion, MeanLine, WakeInTimeResult, wake_in_time};
+pub use wake_in_time_text::{wake_in_time_csv, wake_in_time_text};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

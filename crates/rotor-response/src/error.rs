@@ -135,6 +135,34 @@ pub enum ResponseError {
         /// Last thrust coefficient.
         thrust_coefficient: f64,
     },
+    /// A step in time did not settle.
+    #[error(
+        "step in time at azimuth {azimuth_deg:.1} deg, revolution {revolution}: accelerations still move by {change:.3e} Omega^2 R after {iterations} iterations, wanted {tolerance:.1e}; the last instant before is kept. Remedy: more steps per revolution, or lower collective"
+    )]
+    StepNotConverged {
+        /// Azimuth of the first blade, deg.
+        azimuth_deg: f64,
+        /// Revolutions since the start.
+        revolution: usize,
+        /// Last change of an acceleration, `Omega^2 R`.
+        change: f64,
+        /// Change wanted.
+        tolerance: f64,
+        /// Iterations spent.
+        iterations: usize,
+    },
+    /// At the end of a step in time, circulation and inflow do not agree.
+    #[error(
+        "step in time: the inflow still changes by {change:.3e} of the tip speed after {iterations} iterations, wanted {tolerance:.1e}; the end of the step before is kept. Remedy: more azimuth steps of the wake, or lower collective"
+    )]
+    InflowInTime {
+        /// Iterations spent.
+        iterations: usize,
+        /// Last mismatch of the inflow, tip speed.
+        change: f64,
+        /// Mismatch wanted.
+        tolerance: f64,
+    },
     /// The blade or the time elements refused their input or failed.
     #[error(transparent)]
     Fem(#[from] FemError),

@@ -3,6 +3,7 @@
 mod answers;
 mod error;
 mod loads;
+mod march;
 mod model;
 mod response;
 mod sections;
@@ -22,6 +23,7 @@ pub use answers::station_loads::{LoadHistory, StationLoads};
 pub use error::ResponseError;
 pub use loads::power::PowerBalance;
 pub use loads::wrenches::{SixLoads, hub_loads};
+pub use march::{BladePanels, BladesInTime, Instant, InstantDrive, RotorInTime};
 pub use model::flap::{FlapMass, TrailingEdgeFlap};
 pub use model::flap_mass::with_flap_masses;
 pub use model::rotor_model::{

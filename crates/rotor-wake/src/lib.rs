@@ -45,7 +45,7 @@ mod vector;
 mod wake;
 
 pub use body::Body;
-pub use disk::blades::BladeLines;
+pub use disk::blades::{BladeLines, BladePlace};
 pub use disk::circulation::CirculationMap;
 pub use disk::inflow_map::InflowMap;
 pub use disk::rotor::WakeRotor;
@@ -62,10 +62,10 @@ pub use momentum::{
 pub use pitt_peters::PittPeters;
 pub use vector::Vec3;
 pub use wake::{
-    CirculationSlope, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers,
+    CirculationSlope, ClosestPassage, ControlPoint, CoreSettings, FarField, FarTrailers, FeltNow,
     FilamentStates, FreeWake, FreeWakeSettings, FrozenWake, LineInduction, MotionSlope,
     NearWakeMotion, ReleasePoint, SegmentState, ShedVorticity, VortexCrossing, WakeFilament,
-    WakeMarch, WakeMethod, WakeSymmetry,
+    WakeInTime, WakeMarch, WakeMethod, WakeSymmetry,
 };
 
 /// The example of the crate's README, run as a documentation test.

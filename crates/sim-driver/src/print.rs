@@ -3,6 +3,7 @@
 use crate::SimError;
 use crate::case::LoadedCase;
 use crate::output::Printable;
+use rotor_flight::{WakeInTimeResult, wake_in_time_text};
 use rotor_study::{
     Drives, ModesQuestion, ModesResult, RootPitchComparison, StudyError, TrimmedRotor, WakeResult,
     compare_root_pitch, rotating_modes, wake_of_case,
@@ -80,6 +81,12 @@ pub fn wake_files(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimErr
 impl Printable for WakeResult {
     fn text(&self) -> String {
         wake_text(self)
+    }
+}
+
+impl Printable for WakeInTimeResult {
+    fn text(&self) -> String {
+        wake_in_time_text(self)
     }
 }
 

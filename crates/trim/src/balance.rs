@@ -134,12 +134,23 @@ impl Balance {
         }
     }
 
+    /// The unknowns of controls and attitude.
+    pub(crate) fn unknowns_of(&self, c: &Controls, a: &Attitude) -> DVector<f64> {
+        let pitch = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad];
+        let all = [pitch, [a.shaft_tilt_rad, a.roll_rad, a.tail_thrust]].concat();
+        DVector::from_column_slice(&all[..self.unknowns])
+    }
+
     /// Trim residuals over the weight of a response at an attitude; empty for prescribed controls.
     pub(crate) fn residual(&self, rotor: &RotorSolution, attitude: &Attitude) -> DVector<f64> {
+        self.residual_of(rotor.hub.mean(), attitude)
+    }
+
+    /// The same of mean loads of all blades on the hub, `m0 Omega^2 R^2` and `m0 Omega^2 R^3`.
+    pub(crate) fn residual_of(&self, mut mean: [f64; 6], attitude: &Attitude) -> DVector<f64> {
         // what the hub carries besides its blades' own weight
         let (sin_a, cos_a) = attitude.shaft_tilt_rad.sin_cos();
         let (sin_f, cos_f) = attitude.roll_rad.sin_cos();
-        let mut mean = rotor.hub.mean();
         for (force, up) in mean.iter_mut().zip([sin_a * cos_f, -sin_f, cos_a * cos_f]) {
             *force += self.blades_weight * up;
         }

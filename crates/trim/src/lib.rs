@@ -3,6 +3,7 @@
 mod balance;
 mod coupling;
 mod error;
+mod in_time;
 mod solve;
 mod vehicle;
 mod wake;
@@ -12,6 +13,10 @@ mod wake_settings;
 
 pub use balance::TrimTarget;
 pub use error::TrimError;
+pub use in_time::{
+    CoupledInTime, FlapMotion, InTimeSettings, Interval, RevolutionInTime, SteadyInTime,
+    SteadySettings, steady_in_time, steady_mean,
+};
 pub use solve::{TrimSettings, TrimSolution, imbalance, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 pub use wake::{WakeTrim, trim_in_free_wake, trim_in_free_wake_near};

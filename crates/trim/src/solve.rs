@@ -339,7 +339,10 @@ impl Problem<'_> {
         progress: &mut Progress,
     ) -> Result<TrimSolution, TrimError> {
         let theta0_rad = |x: &DVector<f64>| self.balance.state(x).0.theta0_rad;
-        let mut x = start.map_or_else(|| self.first_guess(solver), |s| self.unknowns_of(s));
+        let mut x = start.map_or_else(
+            || self.first_guess(solver),
+            |s| self.balance.unknowns_of(&s.controls, &s.attitude),
+        );
         progress.last_theta0_rad = theta0_rad(&x);
         let mut current = self.evaluate(solver, &x, start.map(|s| &s.rotor))?;
         let solidity = solver.rotor().model().solidity();
@@ -449,13 +452,6 @@ impl Problem<'_> {
             }
         }
         failure.map_or(Ok(None), Err)
-    }
-
-    fn unknowns_of(&self, solution: &TrimSolution) -> DVector<f64> {
-        let (c, a) = (&solution.controls, &solution.attitude);
-        let pitch = [c.theta0_rad, c.theta1c_rad, c.theta1s_rad];
-        let all = [pitch, [a.shaft_tilt_rad, a.roll_rad, a.tail_thrust]].concat();
-        DVector::from_column_slice(&all[..self.balance.unknowns])
     }
 }
 

@@ -301,6 +301,10 @@ pub const AREAS: &[Area] = &[
         ids: &["V-RESP-65", "V-RESP-66", "V-RESP-67", "V-RESP-68", "V-RESP-69", "V-RESP-70"],
     },
     Area {
+        heading: "Blades marched in time (`rotor-response`)",
+        ids: &["V-RESP-71", "V-RESP-72", "V-RESP-73", "V-RESP-74"],
+    },
+    Area {
         heading: "Trim (`trim`)",
         ids: &[
             "V-TRIM-01",
@@ -313,6 +317,8 @@ pub const AREAS: &[Area] = &[
             "V-TRIM-09",
             "V-TRIM-10",
             "V-TRIM-11",
+            "V-TRIM-12",
+            "V-TRIM-13",
             "V-TRIM-05",
         ],
     },

@@ -38,7 +38,7 @@ impl ResponseSystem<'_> {
     pub(crate) fn evaluate(
         &self,
         samples: &OrbitSamples,
-        lags: Option<Lags>,
+        lags: Option<Lags<'_>>,
         work: &mut Work,
         out: Option<&mut DMatrix<f64>>,
     ) -> Result<Revolution, ResponseError> {

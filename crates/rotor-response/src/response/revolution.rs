@@ -73,15 +73,17 @@ pub(crate) struct RevolutionLoads {
 }
 
 /// The loads at one azimuth point.
-struct PointLoads {
-    root: [f64; 6],
+pub(crate) struct PointLoads {
+    /// Root loads, forces then moments, in the axes that turn with the blade.
+    pub(crate) root: [f64; 6],
     /// Aerodynamic and inertial, by flap.
     hinge: [Vec<f64>; 2],
     power: PowerBalance,
 }
 
 impl PointLoads {
-    fn new(
+    /// The sums at point `p` of a motion and its loads as they are.
+    pub(crate) fn new(
         rotor: &Rotor,
         system: &ResponseSystem<'_>,
         samples: &OrbitSamples,

@@ -2,6 +2,7 @@
 
 use crate::model::flap_mass::with_flap_masses;
 use crate::response::system::{PointInput, ResponseSystem, side_by_side};
+use crate::sections::air::{AirPoint, FlapAngle};
 use crate::sections::flight_air::FlightAir;
 use crate::structure::blade::ResponseBlade;
 use crate::{Controls, Discretisation, ResponseError, RotorModel};
@@ -77,6 +78,43 @@ impl Rotor {
             damping: &self.damping,
             mass: &self.mass,
         }
+    }
+}
+
+impl Rotor {
+    /// What air and pilot do to a blade at an azimuth (rad), for the induced velocity at its lifting stations, down and from
+    /// the leading to the trailing edge, tip speed, and the angles of its flaps.
+    pub(crate) fn point_input(
+        &self,
+        root_pitch_rad: &HarmonicSeries,
+        condition: &Condition,
+        azimuth: f64,
+        induced: &[[f64; 2]],
+        flap: Vec<FlapAngle>,
+    ) -> PointInput {
+        let (sin, cos) = azimuth.sin_cos();
+        let advance_ratio = condition.flight.advance_ratio;
+        let through = advance_ratio * condition.flight.shaft_tilt_rad.tan();
+        let pitch = condition.controls.root_pitch(root_pitch_rad, azimuth);
+        let reverse_flow = self.model.reverse_flow;
+        PointInput {
+            gravity: self.gravity(condition, sin, cos),
+            air: AirPoint { sin, cos, advance_ratio, pitch, reverse_flow },
+            inflow: induced.iter().map(|[down, along]| [through + down, *along]).collect(),
+            flap,
+        }
+    }
+
+    /// Acceleration of gravity in the axes of the coned blade at an azimuth.
+    ///
+    /// ```text
+    /// up = (sin a cos f, -sin f, cos a cos f) in hub axes,   a shaft tilt forward, f bank right
+    /// ```
+    fn gravity(&self, condition: &Condition, sin: f64, cos: f64) -> [f64; 3] {
+        let up = up(condition).map(|c| -self.model.gravity * c);
+        let [outward, leading] = [up[0] * cos + up[1] * sin, up[1] * cos - up[0] * sin];
+        let (across, along) = self.blade.precone.sin_cos();
+        [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 }
 

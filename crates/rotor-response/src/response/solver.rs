@@ -7,7 +7,7 @@ use crate::response::revolution::{Lifting, RevolutionLoads, SETTLED, series};
 use crate::response::rotor::up;
 use crate::response::system::PointInput;
 use crate::response::wake_loading::{loading, mean_lift};
-use crate::sections::air::{AirPoint, FlapAngle};
+use crate::sections::air::FlapAngle;
 use crate::sections::flight_air::{FlightAir, POINTS_TOGETHER};
 use crate::{Condition, ResponseError, Rotor};
 use nalgebra::DMatrix;
@@ -176,6 +176,11 @@ impl RotorSolver {
 
     /// The rotor.
     pub fn rotor(&self) -> &Rotor {
+        &self.rotor
+    }
+
+    /// The rotor, to be shared.
+    pub fn shared_rotor(&self) -> &Arc<Rotor> {
         &self.rotor
     }
 
@@ -407,39 +412,17 @@ impl RotorSolver {
     ) -> Vec<PointInput> {
         let first = self.air.first_station;
         let stations = &self.rotor.blade().grid.x()[first..];
-        let mu = condition.flight.advance_ratio;
-        let through = mu * condition.flight.shaft_tilt_rad.tan();
-        let reverse_flow = self.rotor.model().reverse_flow;
         self.time
             .points()
             .par_iter()
             .with_min_len(POINTS_TOGETHER)
             .map(|&azimuth| {
-                let (sin, cos) = azimuth.sin_cos();
-                let pitch = condition.controls.root_pitch(&self.root_pitch_rad, azimuth);
-                let flap: Vec<FlapAngle> =
-                    condition.flap_angles_rad.iter().map(|f| f.value_and_rates(azimuth)).collect();
+                let flaps = condition.flap_angles_rad.iter();
+                let flap: Vec<FlapAngle> = flaps.map(|f| f.value_and_rates(azimuth)).collect();
                 let induced = inflow.velocities(azimuth, stations);
-                PointInput {
-                    gravity: self.gravity(condition, sin, cos),
-                    air: AirPoint { sin, cos, advance_ratio: mu, pitch, reverse_flow },
-                    inflow: induced.iter().map(|[down, along]| [through + down, *along]).collect(),
-                    flap,
-                }
+                self.rotor.point_input(&self.root_pitch_rad, condition, azimuth, &induced, flap)
             })
             .collect()
-    }
-
-    /// Acceleration of gravity in the axes of the coned blade at an azimuth.
-    ///
-    /// ```text
-    /// up = (sin a cos f, -sin f, cos a cos f) in hub axes,   a shaft tilt forward, f bank right
-    /// ```
-    fn gravity(&self, condition: &Condition, sin: f64, cos: f64) -> [f64; 3] {
-        let up = up(condition).map(|c| -self.rotor.model().gravity * c);
-        let [outward, leading] = [up[0] * cos + up[1] * sin, up[1] * cos - up[0] * sin];
-        let (across, along) = self.rotor.blade().precone.sin_cos();
-        [outward * along + up[2] * across, leading, up[2] * along - outward * across]
     }
 
     pub(crate) fn modal_harmonics(&self, samples: &OrbitSamples) -> Vec<HarmonicSeries> {

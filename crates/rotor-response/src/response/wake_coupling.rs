@@ -4,7 +4,7 @@ use crate::response::revolution::unit_weights;
 use crate::response::wake_loading::{
     between, circulation, of_harmonics, over_panels, panel_means, resolved_harmonics, shares,
 };
-use crate::{Controls, ResponseError, RotorSolution, RotorSolver};
+use crate::{Controls, ResponseError, Rotor, RotorSolution, RotorSolver};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::{HarmonicSeries, harmonic_waves, uniform_azimuths_rad};
@@ -181,35 +181,70 @@ impl RotorSolver {
         wake_rotor: &WakeRotor,
         azimuths: usize,
     ) -> BladeLines {
-        let blade = self.rotor().blade();
+        let psi = uniform_azimuths_rad(azimuths);
+        let nodes = NodeShapes::new(self.rotor(), wake_rotor);
+        let motion: Vec<Vec<f64>> =
+            psi.iter().map(|&psi| modal.iter().map(|m| m.value(psi)).collect()).collect();
+        BladeLines::deflected(wake_rotor, azimuths, |i, n| nodes.displacement(&motion[i], n))
+            .with_trailing_edge(
+                |n| nodes.edges[n],
+                |i, n| {
+                    let root = controls.root_pitch(self.root_pitch_rad(), psi[i]).angle_rad;
+                    nodes.pitch_rad(root, &motion[i], n)
+                },
+            )
+    }
+}
+
+/// Shapes of the modes at the nodes of a wake, and what else says where these are.
+#[derive(Debug, Clone)]
+pub(crate) struct NodeShapes {
+    flap: Vec<Vec<f64>>,
+    lag: Vec<Vec<f64>>,
+    torsion: Vec<Vec<f64>>,
+    twist: Vec<f64>,
+    /// Height of the coned blade.
+    coned: Vec<f64>,
+    lead: f64,
+    /// From the quarter chord to the trailing edge.
+    pub(crate) edges: Vec<f64>,
+}
+
+impl NodeShapes {
+    pub(crate) fn new(rotor: &Rotor, wake_rotor: &WakeRotor) -> Self {
+        let (blade, model) = (rotor.blade(), rotor.model());
         let x = blade.grid().x();
         let at_nodes = |values: &[f64]| -> Vec<f64> {
             wake_rotor.nodes().iter().map(|&r| between(x, values, r)).collect()
         };
         let of_modes = |modes: &[Vec<f64>]| modes.iter().map(|m| at_nodes(m)).collect::<Vec<_>>();
-        let (flap, lag) = (of_modes(&blade.flap.value), of_modes(&blade.lag.value));
-        let (torsion, twist) = (of_modes(&blade.torsion.value), at_nodes(&blade.twist));
-        let psi = uniform_azimuths_rad(azimuths);
-        let motion: Vec<Vec<f64>> =
-            psi.iter().map(|&psi| modal.iter().map(|m| m.value(psi)).collect()).collect();
-        let sum = |shapes: &[Vec<f64>], q: &[f64], n: usize| -> f64 {
-            shapes.iter().zip(q).map(|(shape, q)| q * shape[n]).sum()
-        };
-        let model = self.rotor().model();
-        let chords: Vec<f64> = wake_rotor.nodes().iter().map(|r| model.chord_at(*r)).collect();
-        let (bending, twisting) = (flap.len(), flap.len() + lag.len());
-        BladeLines::deflected(wake_rotor, azimuths, |i, n| {
-            let up = blade.precone * wake_rotor.nodes()[n] + sum(&flap, &motion[i], n);
-            [up, blade.offsets.torque + sum(&lag, &motion[i][bending..], n)]
-        })
-        .with_trailing_edge(
-            |n| 0.75 * chords[n],
-            |i, n| {
-                let root = controls.root_pitch(self.root_pitch_rad(), psi[i]).angle_rad;
-                root + twist[n] + sum(&torsion, &motion[i][twisting..], n)
-            },
-        )
+        Self {
+            flap: of_modes(&blade.flap.value),
+            lag: of_modes(&blade.lag.value),
+            torsion: of_modes(&blade.torsion.value),
+            twist: at_nodes(&blade.twist),
+            coned: wake_rotor.nodes().iter().map(|r| blade.precone * r).collect(),
+            lead: blade.offsets.torque,
+            edges: wake_rotor.nodes().iter().map(|r| 0.75 * model.chord_at(*r)).collect(),
+        }
     }
+
+    /// Up and toward the leading edge, unit `R`, of node `n` for modal coordinates.
+    pub(crate) fn displacement(&self, q: &[f64], n: usize) -> [f64; 2] {
+        let up = self.coned[n] + sum(&self.flap, q, n);
+        [up, self.lead + sum(&self.lag, &q[self.flap.len()..], n)]
+    }
+
+    /// Pitch of the section at node `n`, rad.
+    pub(crate) fn pitch_rad(&self, root_rad: f64, q: &[f64], n: usize) -> f64 {
+        let twisting = self.flap.len() + self.lag.len();
+        root_rad + self.twist[n] + sum(&self.torsion, &q[twisting..], n)
+    }
+}
+
+/// What modes displace a node by.
+fn sum(shapes: &[Vec<f64>], q: &[f64], n: usize) -> f64 {
+    shapes.iter().zip(q).map(|(shape, q)| q * shape[n]).sum()
 }
 
 #[cfg(test)]

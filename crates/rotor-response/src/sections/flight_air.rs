@@ -7,11 +7,13 @@
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
 
 mod memory;
+mod passing;
 
 /// Azimuth points, and stations, that one thread takes together at least: less would cost more to hand out.
 pub(crate) const POINTS_TOGETHER: usize = 4;
 
 pub(crate) use self::memory::StationMemory;
+pub(crate) use self::passing::{LagSteps, PassingLags};
 use crate::model::air_scales::{AirScales, sweep_cosine};
 
 use crate::model::rotor_model::MACH_LIMIT;
@@ -23,7 +25,7 @@ use crate::sections::fine_azimuth::{FineAzimuth, RigidSpeed};
 use crate::sections::lag::Collocation;
 use crate::sections::nonlinear::{TabledStation, add_stall};
 use crate::sections::stall_history::StallHistory;
-use crate::sections::station_lag::{CIRCULATORY_LIFT, RIGID_LIFT, StationLag};
+use crate::sections::station_lag::{CIRCULATORY_LIFT, RIGID_LIFT, SectionChannel, StationLag};
 use crate::sections::station_lags::{LagScratch, StationLags};
 use crate::structure::blade::ResponseBlade;
 use crate::{ResponseError, ReverseFlow, RotorModel};
@@ -34,7 +36,7 @@ use rotor_base::{LANES, Lanes};
 use rotor_fem::TimeElements;
 use std::sync::OnceLock;
 
-/// The sections of one station at the azimuth points of a revolution.
+/// The sections of one station at some azimuth points: those of a revolution, or those of all blades at an instant.
 #[derive(Debug, Clone)]
 struct StationAir {
     points: usize,
@@ -42,11 +44,18 @@ struct StationAir {
     prompt: Vec<PromptCoefficients<Lanes>>,
     /// Gain of the settled lags, output by input, by block of points.
     settled: Vec<Gains<Lanes>>,
-    lags: Vec<StationLag>,
-    /// The same as one operator.
-    whole: StationLags,
+    channels: Channels,
     tables: Option<TabledStation>,
     stall: Option<StallHistory>,
+}
+
+/// The lag channels of a station.
+#[derive(Debug, Clone)]
+enum Channels {
+    /// With their states over a revolution, one by one and as one operator.
+    Round(Vec<StationLag>, StationLags),
+    /// Whose states are brought along from instant to instant.
+    Passing(Vec<SectionChannel>),
 }
 
 /// A station at finer azimuth points.
@@ -99,6 +108,33 @@ impl FlightAir {
                 Station::new(model, place, &speed, time, &collocation)
             })
             .collect::<Result<Vec<_>, _>>()?;
+        Ok(Self { first_station, stations, memories: OnceLock::new() })
+    }
+
+    /// The section aerodynamics of all blades at one instant, in the order of their azimuths (rad).
+    ///
+    /// # Errors
+    /// [`ResponseError`] of coefficients; [`ResponseError::Parameter`] for sections that stall dynamically.
+    pub(crate) fn at_instant(
+        model: &RotorModel,
+        blade: &ResponseBlade,
+        azimuths_rad: &[f64],
+        advance_ratio: f64,
+    ) -> Result<Self, ResponseError> {
+        let x = blade.grid.x();
+        let first_station = x.iter().take_while(|x| **x < blade.cutout).count();
+        let stations = (first_station..x.len())
+            .map(|i| {
+                let AirScales { chord, sweep, .. } = blade.air[i];
+                let across = sweep_cosine(sweep);
+                let place = Place { station: x[i], flap: blade.flap_index[i], chord, across };
+                let speed = RigidSpeed { station: x[i], advance_ratio, sweep, kinks: &[] };
+                let speeds: Vec<f64> =
+                    azimuths_rad.iter().map(|psi| speed.at(*psi).abs()).collect();
+                let air = StationAir::new(model, place, None, azimuths_rad, &speeds)?;
+                Ok(Station { air, fine: None })
+            })
+            .collect::<Result<Vec<_>, ResponseError>>()?;
         Ok(Self { first_station, stations, memories: OnceLock::new() })
     }
 
@@ -159,22 +195,24 @@ pub(crate) struct LoadLaw<'a> {
     pub(crate) scales: &'a [AirScales],
     /// Lifting stations, counted from the first, from which on the tip takes the lift.
     pub(crate) lost_from: usize,
-    pub(crate) lags: Lags,
+    pub(crate) lags: Lags<'a>,
 }
 
 /// How the states of the sections follow the flow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Lags {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Lags<'a> {
     /// Over the revolution.
     Followed,
     /// Settled on their inputs at the point: what the Newton matrix uses.
     Settled,
     /// Followed, the flows being changes of flows: loads are what the inputs of the flap change them by.
     OfFlapChange,
+    /// From the instant before, by lifting station.
+    Passing(&'a [LagSteps]),
 }
 
-impl LoadLaw<'_> {
-    fn at(self, station: usize) -> StationLaw {
+impl<'a> LoadLaw<'a> {
+    fn at(self, station: usize) -> StationLaw<'a> {
         let lost = station >= self.lost_from;
         let kind = match (lost, self.lags == Lags::OfFlapChange) {
             (false, false) => Kind::Whole,
@@ -182,7 +220,12 @@ impl LoadLaw<'_> {
             (true, false) => Kind::DragAlone,
             (true, true) => Kind::Nothing,
         };
-        StationLaw { scales: self.scales[station], kind, settled: self.lags == Lags::Settled }
+        let passing = match self.lags {
+            Lags::Passing(steps) => Some(&steps[station]),
+            _ => None,
+        };
+        let settled = self.lags == Lags::Settled;
+        StationLaw { scales: self.scales[station], kind, settled, passing }
     }
 }
 
@@ -198,10 +241,12 @@ enum Kind {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct StationLaw {
+struct StationLaw<'a> {
     scales: AirScales,
     kind: Kind,
     settled: bool,
+    /// How the states have come from the instant before.
+    passing: Option<&'a LagSteps>,
 }
 
 impl Station {
@@ -215,7 +260,7 @@ impl Station {
         let speeds = |points: &[f64]| -> Vec<f64> { points.iter().map(|p| speed.at(*p)).collect() };
         let air = |collocation: &Collocation, points: &[f64]| {
             let magnitudes: Vec<f64> = speeds(points).iter().map(|u| u.abs()).collect();
-            StationAir::new(model, place, collocation, points, &magnitudes)
+            StationAir::new(model, place, Some(collocation), points, &magnitudes)
         };
         let fine = |azimuth: FineAzimuth| {
             let collocation = collocation.on(&azimuth.half_widths);
@@ -235,7 +280,7 @@ impl Station {
     fn loads(
         &self,
         flows: &[SectionFlow<Lanes>],
-        law: StationLaw,
+        law: StationLaw<'_>,
         scratch: &mut AirScratch,
         out: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
@@ -277,7 +322,7 @@ impl StationAir {
     fn new(
         model: &RotorModel,
         Place { station, flap, chord, across }: Place,
-        collocation: &Collocation,
+        collocation: Option<&Collocation>,
         points: &[f64],
         speeds: &[f64],
     ) -> Result<Self, ResponseError> {
@@ -296,14 +341,21 @@ impl StationAir {
                 Ok(if nonlinear.is_linear() { section } else { section.with_flap_apart() })
             })
             .collect::<Result<Vec<SectionCoefficients>, ResponseError>>()?;
-        let channels = coefficients.first().map_or(0, |c| c.lags.len());
-        let lags = (0..channels)
-            .map(|c| {
-                let mut lag = StationLag::new(collocation, speeds, &coefficients, c, chord)?;
-                lag.rigid &= !nonlinear.is_linear();
-                Ok(lag)
-            })
-            .collect::<Result<Vec<_>, ResponseError>>()?;
+        let count = coefficients.first().map_or(0, |c| c.lags.len());
+        let channels = (0..count).map(|c| {
+            let mut channel = SectionChannel::new(speeds, &coefficients, c, chord);
+            channel.rigid &= !nonlinear.is_linear();
+            channel
+        });
+        let channels = match collocation {
+            None => Channels::Passing(channels.collect()),
+            Some(collocation) => {
+                let lags = channels.map(|channel| StationLag::new(collocation, channel));
+                let lags = lags.collect::<Result<Vec<_>, ResponseError>>()?;
+                let whole = StationLags::new(&lags, collocation.points());
+                Channels::Round(lags, whole)
+            }
+        };
         let settled: Vec<Gains> = coefficients
             .iter()
             .map(|k| {
@@ -346,7 +398,6 @@ impl StationAir {
             ))
         });
         let (tables, stall) = (tables.transpose()?, stall.transpose()?);
-        let whole = StationLags::new(&lags, collocation.points());
         let has_waves = coefficients.first().is_some_and(SectionCoefficients::has_waves);
         let mut rates = in_lanes(&rate).into_iter();
         let prompt = in_lanes(&direct)
@@ -354,7 +405,7 @@ impl StationAir {
             .map(|direct| PromptCoefficients { direct, rate: rates.next(), has_waves })
             .collect();
         let (settled, points) = (in_lanes(&settled), points.len());
-        Ok(Self { points, prompt, settled, lags, whole, tables, stall })
+        Ok(Self { points, prompt, settled, channels, tables, stall })
     }
 }
 
@@ -363,7 +414,7 @@ impl StationAir {
     fn loads(
         &self,
         flows: &[SectionFlow<Lanes>],
-        law: StationLaw,
+        law: StationLaw<'_>,
         scratch: &mut AirScratch,
         out: &mut [SectionLoads<Lanes>],
     ) -> Result<(), ResponseError> {
@@ -378,7 +429,13 @@ impl StationAir {
         scratch.pasts.clear();
         scratch.pasts.resize(flows.len(), SectionPast::default());
         if let Kind::Whole | Kind::FlapSlope = law.kind {
-            self.fill_pasts(flows, scratch)?;
+            match (&self.channels, law.passing) {
+                (Channels::Round(_, whole), _) => self.fill_pasts(whole, flows, scratch)?,
+                (Channels::Passing(channels), Some(steps)) => {
+                    steps.fill_pasts(channels, flows, &mut scratch.pasts);
+                }
+                (Channels::Passing(_), None) => {}
+            }
         }
         Arch::new().dispatch(Loading { of: self, flows, pasts: &scratch.pasts, law, out });
         Ok(())
@@ -388,7 +445,7 @@ impl StationAir {
     fn settled_loads(
         &self,
         flows: &[SectionFlow<Lanes>],
-        law: StationLaw,
+        law: StationLaw<'_>,
         scratch: &mut AirScratch,
         out: &mut [SectionLoads<Lanes>],
     ) {
@@ -403,7 +460,7 @@ impl StationAir {
         block: usize,
         flow: &SectionFlow<Lanes>,
         past: &SectionPast<Lanes>,
-        StationLaw { scales, kind, .. }: StationLaw,
+        StationLaw { scales, kind, .. }: StationLaw<'_>,
     ) -> SectionLoads<Lanes> {
         let loads = match kind {
             Kind::Whole => self.whole_loads(block, scales, flow, past),
@@ -469,6 +526,7 @@ impl StationAir {
     /// [`ResponseError::StallNotPeriodic`].
     fn fill_pasts(
         &self,
+        whole: &StationLags,
         flows: &[SectionFlow<Lanes>],
         AirScratch { pasts, lags, .. }: &mut AirScratch,
     ) -> Result<(), ResponseError> {
@@ -481,7 +539,7 @@ impl StationAir {
             };
             row.0[p % LANES] = share;
         };
-        self.whole.outputs(|p, input| flows[p / LANES].input[input].0[p % LANES], lags, write);
+        whole.outputs(|p, input| flows[p / LANES].input[input].0[p % LANES], lags, write);
         let Some(stall) = &self.stall else { return Ok(()) };
         let at = |p: usize| (p / LANES, p % LANES);
         let mut alone: Vec<SectionPast> =
@@ -529,7 +587,7 @@ struct Loading<'a> {
     of: &'a StationAir,
     flows: &'a [SectionFlow<Lanes>],
     pasts: &'a [SectionPast<Lanes>],
-    law: StationLaw,
+    law: StationLaw<'a>,
     out: &'a mut [SectionLoads<Lanes>],
 }
 

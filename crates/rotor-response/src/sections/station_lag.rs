@@ -1,4 +1,4 @@
-//! One lag channel of a station.
+//! One lag channel of a station, and its states over a revolution.
 
 use crate::ResponseError;
 use crate::sections::lag::{Collocation, PeriodicLag};
@@ -15,7 +15,7 @@ const SLOWEST_RATE: f64 = 1e-3;
 
 /// One lag channel of a station. Its input does not depend on the Mach number, its outputs do.
 #[derive(Debug, Clone)]
-pub(crate) struct StationLag {
+pub(crate) struct SectionChannel {
     pub(crate) input: [f64; 4],
     /// Output and its gain at every point, for the outputs the channel has.
     pub(crate) gains: Vec<(usize, Vec<f64>)>,
@@ -25,10 +25,30 @@ pub(crate) struct StationLag {
     pub(crate) circulatory: bool,
     /// Rate at every point, per rad.
     pub(crate) rates: Vec<f64>,
+}
+
+/// A channel and its states over a revolution.
+#[derive(Debug, Clone)]
+pub(crate) struct StationLag {
+    pub(crate) channel: SectionChannel,
     pub(crate) lag: PeriodicLag,
 }
 
 impl StationLag {
+    /// The periodic states of a channel.
+    ///
+    /// # Errors
+    /// [`ResponseError`] of a rate that no element can follow.
+    pub(crate) fn new(
+        collocation: &Collocation,
+        channel: SectionChannel,
+    ) -> Result<Self, ResponseError> {
+        let lag = PeriodicLag::new(collocation, &channel.rates)?;
+        Ok(Self { channel, lag })
+    }
+}
+
+impl SectionChannel {
     /// Its gain at every point in an output of [`StationLags`], if it has one.
     pub(crate) fn gain(&self, output: usize) -> Option<&[f64]> {
         let of = match output {
@@ -40,16 +60,12 @@ impl StationLag {
     }
 
     /// Channel number `channel` of sections of some coefficients at the points, from their speeds, tip speed, and chord, R.
-    ///
-    /// # Errors
-    /// [`ResponseError`] of a rate that no element can follow.
     pub(crate) fn new(
-        collocation: &Collocation,
         speeds: &[f64],
         coefficients: &[SectionCoefficients],
         channel: usize,
         chord: f64,
-    ) -> Result<Self, ResponseError> {
+    ) -> Self {
         let semichord = 0.5 * chord;
         let of = |k: &SectionCoefficients| k.lags[channel];
         let rates: Vec<f64> = speeds
@@ -68,7 +84,6 @@ impl StationLag {
         let circulatory =
             coefficients.first().is_some_and(|k| k.has_waves() && of(k).is_circulatory);
         let rigid = input[2] == 0.0 && input[3] == 0.0;
-        let lag = PeriodicLag::new(collocation, &rates)?;
-        Ok(Self { input, gains, rigid, circulatory, rates, lag })
+        Self { input, gains, rigid, circulatory, rates }
     }
 }

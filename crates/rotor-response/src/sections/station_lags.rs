@@ -77,8 +77,8 @@ impl StationLags {
     pub(crate) fn new(lags: &[StationLag], points_per_element: usize) -> Self {
         let g = points_per_element;
         let inputs: Vec<usize> =
-            (0..4).filter(|i| lags.iter().any(|lag| lag.input[*i] != 0.0)).collect();
-        let has = |lag: &StationLag, place: usize| lag.gain(place).is_some();
+            (0..4).filter(|i| lags.iter().any(|lag| lag.channel.input[*i] != 0.0)).collect();
+        let has = |lag: &StationLag, place: usize| lag.channel.gain(place).is_some();
         let outputs: Vec<Output> = (0..OUTPUTS)
             .map(|place| {
                 let channels = (0..lags.len()).filter(|c| has(&lags[*c], place)).collect();
@@ -86,7 +86,7 @@ impl StationLags {
             })
             .filter(|output| !output.channels.is_empty())
             .collect();
-        let elements = lags.first().map_or(0, |lag| lag.rates.len() / g);
+        let elements = lags.first().map_or(0, |lag| lag.channel.rates.len() / g);
         let channel_blocks = lags.len().div_ceil(LANES);
         let mut of = Self {
             points_per_element,
@@ -116,7 +116,7 @@ impl StationLags {
                 columns[0][lane] = table.end_start;
                 for (i, input) in self.inputs.iter().enumerate() {
                     for (j, f) in table.end_drive.iter().enumerate() {
-                        columns[1 + i * g + j][lane] = lag.input[*input] * f;
+                        columns[1 + i * g + j][lane] = lag.channel.input[*input] * f;
                     }
                 }
             }
@@ -131,7 +131,7 @@ impl StationLags {
             let mut columns = vec![vec![0.0; g]; count + output.channels.len()];
             for (k, c) in output.channels.iter().enumerate() {
                 let lag = &lags[*c];
-                let Some(gains) = lag.gain(output.place) else { continue };
+                let Some(gains) = lag.channel.gain(output.place) else { continue };
                 let gains = &gains[element * g..(element + 1) * g];
                 let table = lag.lag.element(element);
                 for (start, (gain, alpha)) in
@@ -140,7 +140,7 @@ impl StationLags {
                     *start = gain * alpha;
                 }
                 for (i, input) in self.inputs.iter().enumerate() {
-                    let weight = lag.input[*input];
+                    let weight = lag.channel.input[*input];
                     for (j, drive) in table.drive.chunks_exact(g).enumerate() {
                         let sums = columns[i * g + j].iter_mut();
                         for (sum, (gain, b)) in sums.zip(gains.iter().zip(drive)) {
@@ -267,6 +267,7 @@ fn advance(x: &mut Lanes, passed: &Lanes, added: &Lanes) {
 mod tests {
     use super::*;
     use crate::sections::lag::{Collocation, PeriodicLag};
+    use crate::sections::station_lag::SectionChannel;
     use rotor_fem::TimeElements;
 
     /// Outputs of channels with gains that vary, against the operator of every channel.
@@ -287,14 +288,9 @@ mod tests {
                     let gains = [0, 1, 2].map(|o| (usize::from(o), gain(o)));
                     let gains = gains.into_iter().filter(|g| g.0 <= usize::from(c)).collect();
                     let lag = PeriodicLag::new(&collocation, &rates).unwrap();
-                    StationLag {
-                        input,
-                        gains,
-                        rigid: c % 2 == 0,
-                        circulatory: c % 3 == 0,
-                        rates,
-                        lag,
-                    }
+                    let (rigid, circulatory) = (c % 2 == 0, c % 3 == 0);
+                    let channel = SectionChannel { input, gains, rigid, circulatory, rates };
+                    StationLag { channel, lag }
                 })
                 .collect();
             let inputs: Vec<[f64; 4]> = psi
@@ -303,11 +299,12 @@ mod tests {
                 .collect();
             let mut expected = vec![[0.0; OUTPUTS]; psi.len()];
             for lag in &lags {
-                let drive = inputs.iter().map(|w| (0..4).map(|i| lag.input[i] * w[i]).sum::<f64>());
+                let drive =
+                    inputs.iter().map(|w| (0..4).map(|i| lag.channel.input[i] * w[i]).sum::<f64>());
                 let drive = nalgebra::DVector::from_iterator(psi.len(), drive);
                 let state = lag.lag.operator() * drive;
                 for place in 0..OUTPUTS {
-                    let Some(gains) = lag.gain(place) else { continue };
+                    let Some(gains) = lag.channel.gain(place) else { continue };
                     for ((sum, gain), x) in expected.iter_mut().zip(gains).zip(&state) {
                         sum[place] += gain * x;
                     }

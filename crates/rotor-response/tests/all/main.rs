@@ -8,6 +8,7 @@ mod hover_torque;
 mod joints;
 mod lag_memory;
 mod linearised;
+mod march;
 mod nonlinear;
 mod physics;
 mod power;

@@ -4,6 +4,7 @@ mod blade_loads;
 mod hinge;
 mod hover_torque;
 mod joints;
+mod march;
 mod planform;
 mod rotor;
 mod rotor_details;
@@ -25,6 +26,11 @@ fn hover_torque_rows() {
 #[test]
 fn joints_rows() {
     hold(joints::ROWS);
+}
+
+#[test]
+fn march_rows() {
+    hold(march::ROWS);
 }
 
 #[test]

@@ -279,7 +279,7 @@ impl InflowChoice {
     }
 
     /// The free wake; none of another inflow.
-    pub(crate) fn free_wake(&self) -> Option<FreeWakeValues> {
+    pub fn free_wake(&self) -> Option<FreeWakeValues> {
         if let Self::FreeWake(values) = *self { Some(values) } else { None }
     }
 }

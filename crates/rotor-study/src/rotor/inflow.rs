@@ -101,7 +101,7 @@ pub fn settled_trim(
 }
 
 /// What may help a wake that does not settle.
-const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used";
+const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used; at advance ratios below 0.1, where there may be no periodic wake, `hhc wake CASE.ron --in-time`";
 
 /// Mean inflow over that of momentum theory, least and most, that a rotor in its wake has.
 const MOMENTUM: [f64; 2] = [0.5, 2.5];

@@ -116,6 +116,11 @@ impl TrimmedRotor {
         &self.scales
     }
 
+    /// The solver of its responses.
+    pub fn solver(&self) -> &RotorSolver {
+        &self.solver
+    }
+
     /// The trim.
     pub fn trim(&self) -> &TrimSolution {
         &self.trim

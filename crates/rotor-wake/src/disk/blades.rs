@@ -11,6 +11,55 @@ const STEADY: f64 = 0.01;
 /// Factor up to which two chords differ by rounding.
 const SAME_CHORD: f64 = 1.0 + 1e-9;
 
+/// A node of a blade turned by an azimuth (sine, cosine), at `r` and displaced by `[up, toward the leading edge]`.
+fn displaced((sin, cos): (f64, f64), r: f64, [up, lead]: [f64; 2]) -> Vec3 {
+    [r * cos - lead * sin, r * sin + lead * cos, up]
+}
+
+/// The place a distance behind a node of a blade along its chord, which is turned up by `pitch_rad`.
+fn behind((sin, cos): (f64, f64), node: Vec3, distance: f64, pitch_rad: f64) -> Vec3 {
+    let (below, behind) = pitch_rad.sin_cos();
+    let (below, behind) = (distance * below, distance * behind);
+    [node[0] + behind * sin, node[1] - behind * cos, node[2] - below]
+}
+
+/// One blade at one instant: ends of its panels in hub axes, unit `R`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BladePlace {
+    /// On the lifting line.
+    pub(crate) line: Vec<Vec3>,
+    /// Where the trailers leave the blade.
+    pub(crate) edge: Vec<Vec3>,
+}
+
+/// A point of the trailing edge at a station between the nodes (unit `R`) of the rotor.
+pub(crate) fn edge_between(edge: &[Vec3], rotor: &WakeRotor, station: f64) -> Vec3 {
+    let nodes = rotor.nodes();
+    let above = nodes.partition_point(|r| *r < station).clamp(1, nodes.len() - 1);
+    let t = (station - nodes[above - 1]) / (nodes[above] - nodes[above - 1]);
+    add(scale(edge[above - 1], 1.0 - t), scale(edge[above], t))
+}
+
+impl BladePlace {
+    /// A blade at an azimuth (rad), displaced by `[up, toward the leading edge]` (unit `R`) by node, the wake leaving at a
+    /// distance (unit `R`) behind the line along the chord, which is turned up by a pitch (rad), both by node: as
+    /// [`BladeLines::deflected`] and [`BladeLines::with_trailing_edge`].
+    pub fn deflected(
+        rotor: &WakeRotor,
+        azimuth_rad: f64,
+        displacement: impl Fn(usize) -> [f64; 2],
+        distance: impl Fn(usize) -> f64,
+        pitch_rad: impl Fn(usize) -> f64,
+    ) -> Self {
+        let turned = azimuth_rad.sin_cos();
+        let nodes = rotor.nodes().iter().enumerate();
+        let line: Vec<Vec3> = nodes.map(|(n, r)| displaced(turned, *r, displacement(n))).collect();
+        let edges = line.iter().enumerate();
+        let edge = edges.map(|(n, at)| behind(turned, *at, distance(n), pitch_rad(n))).collect();
+        Self { line, edge }
+    }
+}
+
 /// Ends of the panels in hub axes (unit `R`) at uniform azimuths, `[azimuth][node]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BladeLines {
@@ -36,11 +85,9 @@ impl BladeLines {
         let nodes = rotor.nodes().len();
         let mut points = Vec::with_capacity(azimuths * nodes);
         for i in 0..azimuths {
-            let azimuth = TAU * i as f64 / azimuths as f64;
-            let (sin, cos) = azimuth.sin_cos();
+            let turned = (TAU * i as f64 / azimuths as f64).sin_cos();
             for (n, &r) in rotor.nodes().iter().enumerate() {
-                let [up, lead] = displacement(i, n);
-                points.push([r * cos - lead * sin, r * sin + lead * cos, up]);
+                points.push(displaced(turned, r, displacement(i, n)));
             }
         }
         let edges = points.clone();
@@ -60,11 +107,9 @@ impl BladeLines {
         let azimuths = self.azimuths();
         let mut edges = self.points.clone();
         for (k, edge) in edges.iter_mut().enumerate() {
-            let (sin, cos) = (TAU * (k / self.nodes) as f64 / azimuths as f64).sin_cos();
+            let turned = (TAU * (k / self.nodes) as f64 / azimuths as f64).sin_cos();
             let node = k % self.nodes;
-            let (below, behind) = pitch(k / self.nodes, node).sin_cos();
-            let (below, behind) = (distance(node) * below, distance(node) * behind);
-            *edge = [edge[0] + behind * sin, edge[1] - behind * cos, edge[2] - below];
+            *edge = behind(turned, *edge, distance(node), pitch(k / self.nodes, node));
         }
         Self { edges, ..self }
     }
@@ -127,11 +172,7 @@ impl BladeLines {
 
     /// The trailing edge of one azimuth at a station between the nodes (unit `R`) of the rotor.
     pub(crate) fn edge_between(&self, azimuth: usize, rotor: &WakeRotor, station: f64) -> Vec3 {
-        let nodes = rotor.nodes();
-        let above = nodes.partition_point(|r| *r < station).clamp(1, nodes.len() - 1);
-        let t = (station - nodes[above - 1]) / (nodes[above] - nodes[above - 1]);
-        let edge = self.edge_at(azimuth);
-        add(scale(edge[above - 1], 1.0 - t), scale(edge[above], t))
+        edge_between(self.edge_at(azimuth), rotor, station)
     }
 
     /// All nodes of the lifting line at one azimuth.

@@ -8,7 +8,7 @@
 
 use super::row_blocks::{RowBlock, RowBlocks};
 use super::sources::Sources;
-use super::{ControlPoint, CoreSettings, FreeWake};
+use super::{ControlPoint, CoreSettings, FreeWake, FreeWakeSettings};
 use crate::error::ensure;
 use crate::kernel::{BLOCK, TakeVelocity, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
@@ -44,16 +44,42 @@ const HALF_A_CHORD: f64 = 2.0 / 3.0;
 
 /// Points of panels at one instant: at most a block of the kernel.
 #[derive(Default)]
-struct TargetBlock {
+pub(super) struct TargetBlock {
     phase: usize,
     /// Row of the matrices.
-    rows: Vec<usize>,
-    points: Vec<Vec3>,
+    pub(super) rows: Vec<usize>,
+    pub(super) points: Vec<Vec3>,
     /// What of the downwash of the panel's own circulation belongs to the section.
-    own: [f64; BLOCK],
+    pub(super) own: [f64; BLOCK],
     /// Sine and cosine of the azimuth of each.
-    sines: [f64; BLOCK],
-    cosines: [f64; BLOCK],
+    pub(super) sines: [f64; BLOCK],
+    pub(super) cosines: [f64; BLOCK],
+}
+
+impl TargetBlock {
+    /// Adds the control point of a panel, from the ends of its line and of its edge, at an azimuth.
+    pub(super) fn push(
+        &mut self,
+        row: usize,
+        [line, edge]: [&[Vec3]; 2],
+        azimuth_rad: f64,
+        settings: &FreeWakeSettings,
+    ) {
+        let lane = self.points.len();
+        let middle = |ends: &[Vec3]| scale(add(ends[0], ends[1]), 0.5);
+        let line = middle(line);
+        let behind = match settings.control_point {
+            ControlPoint::LiftingLine => [0.0; 3],
+            ControlPoint::ThreeQuarterChord => scale(sub(middle(edge), line), HALF_A_CHORD),
+        };
+        self.rows.push(row);
+        self.points.push(add(line, behind));
+        if norm(behind) > 0.0 {
+            let CoreSettings { model, near_radius, .. } = settings.core;
+            self.own[lane] = model.of_a_straight_line(norm(behind), near_radius);
+        }
+        (self.sines[lane], self.cosines[lane]) = azimuth_rad.sin_cos();
+    }
 }
 
 /// The rows of the map at the points of a block, column by column.
@@ -91,24 +117,11 @@ impl FreeWake {
             let blades = self.blade_azimuths(phase).take(self.blades_that_differ());
             let places: Vec<_> = blades.flat_map(|i| (0..panels).map(move |s| (i, s))).collect();
             for places in places.chunks(BLOCK) {
-                let rows = places.iter().map(|(i, s)| i * panels + s).collect();
-                let mut block = TargetBlock { phase, rows, ..TargetBlock::default() };
-                for (lane, &(i, s)) in places.iter().enumerate() {
-                    let middle = |ends: &[Vec3]| scale(add(ends[s], ends[s + 1]), 0.5);
-                    let line = middle(self.lines.at(i));
-                    let behind = match self.settings.control_point {
-                        ControlPoint::LiftingLine => [0.0; 3],
-                        ControlPoint::ThreeQuarterChord => {
-                            scale(sub(middle(self.lines.edge_at(i)), line), HALF_A_CHORD)
-                        }
-                    };
-                    block.points.push(add(line, behind));
-                    if norm(behind) > 0.0 {
-                        let CoreSettings { model, near_radius, .. } = self.settings.core;
-                        block.own[lane] = model.of_a_straight_line(norm(behind), near_radius);
-                    }
+                let mut block = TargetBlock { phase, ..TargetBlock::default() };
+                for &(i, s) in places {
+                    let ends = [self.lines.at(i), self.lines.edge_at(i)].map(|of| &of[s..s + 2]);
                     let azimuth = i as f64 * self.settings.step_rad();
-                    (block.sines[lane], block.cosines[lane]) = azimuth.sin_cos();
+                    block.push(i * panels + s, ends, azimuth, &self.settings);
                 }
                 blocks.push(block);
             }

@@ -3,7 +3,7 @@
 use super::FreeWake;
 use super::filament::rms_distance;
 use super::settings::WakeMethod;
-use super::sources::{BladeView, Sources};
+use super::sources::{BladeView, SourceContext, Sources};
 use crate::CirculationMap;
 use crate::WakeError;
 use crate::kernel::{CoreModel, induced_velocities};
@@ -12,7 +12,7 @@ use crate::vector::{Vec3, about_the_shaft, add, is_finite, norm, scale, sub};
 use std::f64::consts::TAU;
 
 /// Free filaments of one blade: `[filament][age]`.
-type Shape = Vec<Vec<Vec3>>;
+pub(super) type Shape = Vec<Vec<Vec3>>;
 
 /// The present and the two earlier shapes of one blade's wake, and the velocities of the present one.
 #[derive(Debug, Clone)]
@@ -20,6 +20,73 @@ struct BladeState {
     azimuth: usize,
     levels: [Shape; 3],
     velocity: Shape,
+}
+
+/// Mean displacement of some rolled-up vortices over their last free turn.
+pub(super) fn last_turn<'a>(far: impl Iterator<Item = &'a Vec<Vec3>>, azimuths: usize) -> Vec3 {
+    let (mut sum, mut count) = ([0.0; 3], 0);
+    for points in far {
+        for k in (points.len() - azimuths).max(azimuths)..points.len() {
+            sum = add(sum, sub(points[k], points[k - azimuths]));
+            count += 1;
+        }
+    }
+    scale(sum, 1.0 / f64::from(count.max(1)))
+}
+
+/// Fills the newest level of a blade's filaments from the two before, released where `release` says.
+fn carry_blade(
+    [now, a, b]: &mut [Shape; 3],
+    velocity: &Shape,
+    release: impl Fn(usize) -> Vec3,
+    step: f64,
+    stream: Vec3,
+) {
+    for (j, points) in now.iter_mut().enumerate() {
+        points[0] = release(j);
+        for z in 1..points.len() {
+            let mean = scale(add(velocity[j][z], velocity[j][z - 1]), 0.5);
+            let wind = scale(add(stream, mean), 4.0 * step);
+            let before = scale(add(a[j][z], a[j][z - 1]), 4.0);
+            let earlier = scale(add(b[j][z], b[j][z - 1]), -1.0);
+            let sum = add(add(points[z - 1], before), add(earlier, wind));
+            points[z] = scale(sum, 1.0 / 7.0);
+        }
+    }
+}
+
+/// Adds the flow round a body to the velocities at a shape.
+pub(super) fn add_the_body(wake: &FreeWake, shape: &Shape, velocity: &mut Shape) {
+    for (v, at) in velocity.iter_mut().flatten().zip(shape.iter().flatten()) {
+        *v = add(*v, wake.by_the_body(*at));
+    }
+}
+
+impl FreeWake {
+    /// Induced velocities at the shapes of the first blades of these.
+    pub(super) fn velocities_of(
+        &self,
+        shapes: &[&Shape],
+        views: &[BladeView<'_>],
+        context: &SourceContext<'_>,
+    ) -> Vec<Shape> {
+        let circulation = context.circulation;
+        let set = Sources::of_geometry(views, context).segments(context, circulation.values());
+        let targets: Vec<Vec3> =
+            shapes.iter().flat_map(|shape| shape.iter().flatten().copied()).collect();
+        let mut values = induced_velocities(&targets, &set).into_iter();
+        let corrected = self.settings.core.model == CoreModel::RosenheadMoore;
+        let peaks = circulation.outboard_peaks();
+        let of_blade = |(shape, view): (&&Shape, &BladeView<'_>)| {
+            let mut of_blade: Shape =
+                shape.iter().map(|points| values.by_ref().take(points.len()).collect()).collect();
+            if let (true, Some(tip), Some(v)) = (corrected, shape.last(), of_blade.last_mut()) {
+                self.add_arcs_of(tip, view.past, circulation, &peaks, v);
+            }
+            of_blade
+        };
+        shapes.iter().zip(views).map(of_blade).collect()
+    }
 }
 
 /// A time-accurate free wake, every blade on its own: predictor-corrector with a second-order backward
@@ -192,20 +259,9 @@ impl WakeMarch {
 
     /// Fills the newest level of every blade.
     fn carry(&mut self, releases: &[Vec<Vec3>]) {
-        let wake = &self.wake;
-        let (step, stream) = (wake.settings.step_rad(), wake.free_stream());
-        for BladeState { azimuth, levels: [now, a, b], velocity } in &mut self.blades {
-            for (j, points) in now.iter_mut().enumerate() {
-                points[0] = releases[j][*azimuth];
-                for z in 1..points.len() {
-                    let mean = scale(add(velocity[j][z], velocity[j][z - 1]), 0.5);
-                    let wind = scale(add(stream, mean), 4.0 * step);
-                    let before = scale(add(a[j][z], a[j][z - 1]), 4.0);
-                    let earlier = scale(add(b[j][z], b[j][z - 1]), -1.0);
-                    let sum = add(add(points[z - 1], before), add(earlier, wind));
-                    points[z] = scale(sum, 1.0 / 7.0);
-                }
-            }
+        let (step, stream) = (self.wake.settings.step_rad(), self.wake.free_stream());
+        for BladeState { azimuth, levels, velocity } in &mut self.blades {
+            carry_blade(levels, velocity, |j| releases[j][*azimuth], step, stream);
         }
     }
 
@@ -214,26 +270,9 @@ impl WakeMarch {
         let wake = &self.wake;
         let views: Vec<BladeView<'_>> = self.blades.iter().map(|b| self.view(b)).collect();
         let context = wake.context(circulation, self.turn());
-        let set = Sources::of_geometry(&views, &context).segments(&context, circulation.values());
         let differing = &self.blades[..wake.blades_that_differ()];
-        let targets: Vec<Vec3> =
-            differing.iter().flat_map(|b| b.levels[0].iter().flatten().copied()).collect();
-        let mut values = induced_velocities(&targets, &set).into_iter();
-        let corrected = wake.settings.core.model == CoreModel::RosenheadMoore;
-        let peaks = circulation.outboard_peaks();
-        let mut velocities: Vec<Shape> = Vec::with_capacity(self.blades.len());
-        for state in differing {
-            let mut of_blade: Shape = state.levels[0]
-                .iter()
-                .map(|points| values.by_ref().take(points.len()).collect())
-                .collect();
-            if let (true, Some(tip), Some(v)) =
-                (corrected, state.levels[0].last(), of_blade.last_mut())
-            {
-                wake.add_arcs_of(tip, state.azimuth, circulation, &peaks, v);
-            }
-            velocities.push(of_blade);
-        }
+        let shapes: Vec<&Shape> = differing.iter().map(|b| &b.levels[0]).collect();
+        let velocities = wake.velocities_of(&shapes, &views, &context);
         let spacing = TAU / self.blades.len() as f64;
         for (b, state) in self.blades.iter_mut().enumerate() {
             // in an axial wake the other blades have what the first one has, turned
@@ -242,10 +281,7 @@ impl WakeMarch {
                 Some(own) => own.clone(),
                 None => velocities[0].iter().map(|v| v.iter().map(turned).collect()).collect(),
             };
-            let points = state.levels[0].iter().flatten();
-            for (v, at) in state.velocity.iter_mut().flatten().zip(points) {
-                *v = add(*v, wake.by_the_body(*at));
-            }
+            add_the_body(wake, &state.levels[0], &mut state.velocity);
         }
     }
 
@@ -259,7 +295,7 @@ impl WakeMarch {
             wake.near.iter().map(|f| f.at(state.azimuth)).collect()
         };
         BladeView {
-            azimuth: state.azimuth,
+            past: wake.periodic(state.azimuth),
             line: wake.lines.at(state.azimuth),
             edge: wake.lines.edge_at(state.azimuth),
             near,
@@ -274,15 +310,8 @@ impl WakeMarch {
 
     /// Mean displacement over the last free turn, over all blades.
     fn turn(&self) -> Vec3 {
-        let azimuths = self.wake.settings.azimuths;
-        let (mut sum, mut count) = ([0.0; 3], 0);
-        for points in self.blades.iter().flat_map(|b| &b.levels[0][self.near_count()..]) {
-            for k in (points.len() - azimuths).max(azimuths)..points.len() {
-                sum = add(sum, sub(points[k], points[k - azimuths]));
-                count += 1;
-            }
-        }
-        scale(sum, 1.0 / f64::from(count.max(1)))
+        let far = self.blades.iter().flat_map(|b| &b.levels[0][self.near_count()..]);
+        last_turn(far, self.wake.settings.azimuths)
     }
 
     /// Stores the newest shape of blade 0 in the periodic grid.

@@ -3,6 +3,7 @@
 mod crossing;
 mod filament;
 mod free_wake;
+mod in_time;
 mod influence;
 mod march;
 mod passage;
@@ -15,6 +16,7 @@ mod velocity;
 
 pub use crossing::VortexCrossing;
 pub use free_wake::{FreeWake, WakeFilament};
+pub use in_time::{FeltNow, WakeInTime};
 pub use influence::{CirculationSlope, FrozenWake, LineInduction, MotionSlope};
 pub use march::WakeMarch;
 pub use passage::{ClosestPassage, FilamentStates, SegmentState};

@@ -86,9 +86,9 @@ impl FreeWake {
         });
         let (f, k, (distance, part, foot)) = pairs.min_by(|a, b| a.2.0.total_cmp(&b.2.0))?;
         let core_radius = if k < self.settings.near_steps() {
-            context.trailer_radius(self.far[f].node, from, k)
+            context.trailer_radius(self.far[f].node, self.periodic(from), k)
         } else {
-            context.rolled_up_radius(f, from, k)
+            context.rolled_up_radius(f, self.periodic(from), k)
         };
         Some(ClosestPassage {
             azimuth_rad: met as f64 * step,
@@ -111,8 +111,8 @@ impl FreeWake {
         self.check(circulation)?;
         let context = self.context(circulation, self.turn());
         Ok(self.states_of(&self.far, |f, i, k| SegmentState {
-            circulation: context.rolled_up_strength(f, i, k),
-            core_radius: context.rolled_up_radius(f, i, k),
+            circulation: context.rolled_up_strength(f, self.periodic(i), k),
+            core_radius: context.rolled_up_radius(f, self.periodic(i), k),
         }))
     }
 
@@ -127,8 +127,8 @@ impl FreeWake {
         self.check(circulation)?;
         let context = self.context(circulation, self.turn());
         Ok(self.states_of(&self.near, |n, i, k| SegmentState {
-            circulation: context.trailer_strength(n, i, k),
-            core_radius: context.trailer_radius(n, i, k),
+            circulation: context.trailer_strength(n, self.periodic(i), k),
+            core_radius: context.trailer_radius(n, self.periodic(i), k),
         }))
     }
 

@@ -60,7 +60,7 @@ impl FreeWake {
     }
 
     /// How far the free stream and the mean inflow carry within `k` steps.
-    fn wind_over(&self, k: usize) -> Vec3 {
+    pub(super) fn wind_over(&self, k: usize) -> Vec3 {
         let wind = sub(self.free_stream(), [0.0, 0.0, self.carrying_inflow]);
         scale(wind, k as f64 * self.settings.step_rad())
     }
@@ -99,7 +99,11 @@ impl FreeWake {
 
     /// The arc behind a blade at azimuth `i` on which its node would come back by `k` steps.
     fn swept(&self, node: usize, i: usize, k: usize) -> Vec3 {
-        let [x, y, z] = self.lines.edge_at(i)[node];
+        self.swept_back(self.lines.edge_at(i)[node], k)
+    }
+
+    /// A place on a blade turned back by `k` steps.
+    pub(super) fn swept_back(&self, [x, y, z]: Vec3, k: usize) -> Vec3 {
         let (sin, cos) = (k as f64 * self.settings.step_rad()).sin_cos();
         [x * cos + y * sin, y * cos - x * sin, z]
     }

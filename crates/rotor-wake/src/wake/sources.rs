@@ -91,18 +91,26 @@ impl RollUp {
         rotor: &WakeRotor,
         circulation: &CirculationMap,
     ) -> Vec<Vec<f64>> {
-        let of = |f: usize, azimuth: usize| {
-            let own = rotor.nodes()[self.nodes[f]];
-            match point {
-                ReleasePoint::Station => own,
-                ReleasePoint::Centroid => {
-                    self.centroid(f, azimuth, rotor, circulation).unwrap_or(own)
-                }
-            }
-        };
+        let of = |f: usize, row: usize| self.release_station(f, row, point, rotor, circulation);
         (0..self.nodes.len())
             .map(|f| (0..circulation.azimuths()).map(|i| of(f, i)).collect())
             .collect()
+    }
+
+    /// Where filament `f` is released by the circulation of a row, unit `R`.
+    pub(crate) fn release_station(
+        &self,
+        f: usize,
+        row: usize,
+        point: ReleasePoint,
+        rotor: &WakeRotor,
+        circulation: &CirculationMap,
+    ) -> f64 {
+        let own = rotor.nodes()[self.nodes[f]];
+        match point {
+            ReleasePoint::Station => own,
+            ReleasePoint::Centroid => self.centroid(f, row, rotor, circulation).unwrap_or(own),
+        }
     }
 
     /// Centroid of what filament `f` collects at an azimuth, within the nodes that trail it; none if they trail
@@ -147,11 +155,34 @@ impl RollUp {
     }
 }
 
+/// The circulations that a blade has had: a ring of rows of the map, of which one is of the present. The rows are a multiple
+/// of the azimuth steps, and the present one lies in them as the blade does in its revolution.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Past {
+    /// First row of the ring.
+    pub(crate) first: usize,
+    pub(crate) rows: usize,
+    /// Row of the present, counted from the first.
+    pub(crate) now: usize,
+}
+
+impl Past {
+    /// Row of an age, counted from the first.
+    fn back(self, age: usize) -> usize {
+        (self.now + self.rows - age % self.rows) % self.rows
+    }
+
+    /// Row of an age, steps.
+    pub(crate) fn row(self, age: usize) -> usize {
+        self.first + self.back(age)
+    }
+}
+
 /// One blade with its wake at one instant.
 #[derive(Debug, Clone)]
 pub(crate) struct BladeView<'a> {
-    /// Azimuth of the blade, steps.
-    pub(crate) azimuth: usize,
+    /// What it has carried.
+    pub(crate) past: Past,
     /// Nodes of the lifting line.
     pub(crate) line: &'a [Vec3],
     /// Where the trailers leave the blade.
@@ -177,53 +208,48 @@ pub(crate) struct SourceContext<'a> {
 }
 
 impl SourceContext<'_> {
-    /// Azimuth at which a blade at `azimuth` released what is `age` steps old.
-    fn release(&self, azimuth: usize, age: usize) -> usize {
-        let azimuths = self.settings.azimuths;
-        (azimuth + azimuths - age % azimuths) % azimuths
-    }
-
     /// What the segment of filament `f` from an age to the next one carries.
-    fn rolled_up_terms(&self, f: usize, azimuth: usize, age: usize) -> Terms {
-        let releases = [age, age + 1].map(|age| self.release(azimuth, age));
+    fn rolled_up_terms(&self, f: usize, past: Past, age: usize) -> Terms {
+        let releases = [age, age + 1].map(|age| past.row(age));
         self.roll_up.terms(f, releases, self.rotor.panels())
     }
 
     /// Strength of the same.
-    pub(crate) fn rolled_up_strength(&self, f: usize, azimuth: usize, age: usize) -> f64 {
-        self.rolled_up_terms(f, azimuth, age).strength(self.circulation.values())
+    pub(crate) fn rolled_up_strength(&self, f: usize, past: Past, age: usize) -> f64 {
+        self.rolled_up_terms(f, past, age).strength(self.circulation.values())
     }
 
     /// Core radius of the same.
-    pub(crate) fn rolled_up_radius(&self, f: usize, azimuth: usize, age: usize) -> f64 {
-        core_radius(self.settings, age, self.rolled_up_strength(f, azimuth, age))
+    pub(crate) fn rolled_up_radius(&self, f: usize, past: Past, age: usize) -> f64 {
+        core_radius(self.settings, age, self.rolled_up_strength(f, past, age))
     }
 
     /// What the trailer of a node carries from an age to the next one.
-    fn trailer_terms(&self, node: usize, azimuth: usize, age: usize) -> Terms {
+    fn trailer_terms(&self, node: usize, past: Past, age: usize) -> Terms {
         let [[a, b], [c, d]] =
-            [age, age + 1].map(|age| self.trailed_terms(node, self.release(azimuth, age), 0.5));
+            [age, age + 1].map(|age| self.trailed_terms(node, past.row(age), 0.5));
         Terms([a, b, c, d])
     }
 
-    /// A factor times what a node trails of the circulation at an azimuth: inboard and outboard panel.
-    fn trailed_terms(&self, node: usize, azimuth: usize, factor: f64) -> [(usize, f64); 2] {
+    /// A factor times what a node trails of the circulation of a row: inboard and outboard panel.
+    fn trailed_terms(&self, node: usize, row: usize, factor: f64) -> [(usize, f64); 2] {
         let panels = self.rotor.panels();
-        let at = azimuth * panels;
+        let at = row * panels;
         let inboard = if node > 0 { (at + node - 1, factor) } else { (0, 0.0) };
         let outboard = if node < panels { (at + node, -factor) } else { (0, 0.0) };
         [inboard, outboard]
     }
 
     /// Strength of the same.
-    pub(crate) fn trailer_strength(&self, node: usize, azimuth: usize, age: usize) -> f64 {
-        self.trailer_terms(node, azimuth, age).strength(self.circulation.values())
+    pub(crate) fn trailer_strength(&self, node: usize, past: Past, age: usize) -> f64 {
+        self.trailer_terms(node, past, age).strength(self.circulation.values())
     }
 
     /// Core radius of the same: in the sheet of the own blade no wider than its panels ask for; but no less than a chord for
     /// sections in slow or reverse flow, whose sheet lies on the blade.
-    pub(crate) fn trailer_radius(&self, node: usize, azimuth: usize, age: usize) -> f64 {
-        let released = self.release(azimuth, age) as f64 * self.settings.step_rad();
+    pub(crate) fn trailer_radius(&self, node: usize, past: Past, age: usize) -> f64 {
+        let azimuth = past.back(age) % self.settings.azimuths;
+        let released = azimuth as f64 * self.settings.step_rad();
         let along = self.rotor.nodes()[node] + self.advance_ratio * released.sin();
         let near = self.settings.core.near_radius;
         match (age < self.settings.sheet_steps(), along >= SLOW.min(self.advance_ratio)) {
@@ -254,7 +280,7 @@ impl Sources {
         let mut out = Self::default();
         for view in views {
             out.bound(view, context);
-            out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
+            out.chords(view, context, |n| context.trailer_radius(n, view.past, 0));
             out.near(view, context, 0.0);
             out.far(view, context, context.settings.near_steps(), 0.0);
         }
@@ -271,7 +297,7 @@ impl Sources {
         for view in views {
             out.bound(view, context);
             if free {
-                out.chords(view, context, |n| context.trailer_radius(n, view.azimuth, 0));
+                out.chords(view, context, |n| context.trailer_radius(n, view.past, 0));
                 out.near(view, context, core.mutual_radius);
                 out.far(view, context, context.settings.near_steps(), core.mutual_radius);
             } else {
@@ -322,7 +348,7 @@ impl Sources {
     fn bound(&mut self, view: &BladeView<'_>, context: &SourceContext<'_>) {
         let panels = context.rotor.panels();
         for (s, ends) in view.line.windows(2).enumerate() {
-            let terms = Terms::pair((view.azimuth * panels + s, 1.0), (0, 0.0));
+            let terms = Terms::pair((view.past.row(0) * panels + s, 1.0), (0, 0.0));
             self.push([ends[0], ends[1]], context.settings.core.near_radius, terms, false);
         }
     }
@@ -336,7 +362,7 @@ impl Sources {
     ) {
         for (n, (from, to)) in view.line.iter().zip(view.edge).enumerate() {
             if norm(sub(*to, *from)) > 0.0 {
-                let [inboard, outboard] = context.trailed_terms(n, view.azimuth, 1.0);
+                let [inboard, outboard] = context.trailed_terms(n, view.past.row(0), 1.0);
                 self.push([*from, *to], radius(n), Terms::pair(inboard, outboard), false);
             }
         }
@@ -348,8 +374,8 @@ impl Sources {
         let steps = settings.near_steps();
         for (n, points) in view.near.iter().enumerate() {
             for k in 0..steps {
-                let radius = context.trailer_radius(n, view.azimuth, k).max(least);
-                let terms = context.trailer_terms(n, view.azimuth, k);
+                let radius = context.trailer_radius(n, view.past, k).max(least);
+                let terms = context.trailer_terms(n, view.past, k);
                 self.push([points[k], points[k + 1]], radius, terms, false);
             }
         }
@@ -359,7 +385,7 @@ impl Sources {
         for k in 0..steps {
             // at the edge itself the circulation changes from the blade's own
             let [younger, older] =
-                [k.saturating_sub(1), k + 1].map(|age| context.release(view.azimuth, age) * panels);
+                [k.saturating_sub(1), k + 1].map(|age| view.past.row(age) * panels);
             for s in 0..panels {
                 let ends = [view.near[s][k], view.near[s + 1][k]];
                 let radius = settings.core.near_radius.max(least);
@@ -375,8 +401,8 @@ impl Sources {
         let azimuths = settings.azimuths;
         for (f, points) in view.far.iter().enumerate() {
             let steps = points.len() - 1;
-            let terms = |age: usize| context.rolled_up_terms(f, view.azimuth, age);
-            let radius = |age: usize| context.rolled_up_radius(f, view.azimuth, age).max(least);
+            let terms = |age: usize| context.rolled_up_terms(f, view.past, age);
+            let radius = |age: usize| context.rolled_up_radius(f, view.past, age).max(least);
             // point of an age; behind the free turns the last one is repeated
             let point = |age: usize| match age.checked_sub(steps + 1) {
                 None => points[age],

@@ -2,7 +2,7 @@
 
 use super::FreeWake;
 use super::filament::Filament;
-use super::sources::{BladeView, RollUp, SourceContext, Sources};
+use super::sources::{BladeView, Past, RollUp, SourceContext, Sources};
 use crate::CirculationMap;
 use crate::kernel::{CoreModel, arc_velocity, induced_velocities};
 use crate::vector::{Vec3, about_the_shaft, add, scale, sub};
@@ -13,9 +13,14 @@ use rayon::prelude::*;
 pub(super) type Velocities = Vec<Vec<Vec3>>;
 
 impl FreeWake {
+    /// What a blade at an azimuth has carried: the same every revolution.
+    pub(super) fn periodic(&self, azimuth: usize) -> Past {
+        Past { first: 0, rows: self.settings.azimuths, now: azimuth }
+    }
+
     fn view(&self, azimuth: usize) -> BladeView<'_> {
         BladeView {
-            azimuth,
+            past: self.periodic(azimuth),
             line: self.lines.at(azimuth),
             edge: self.lines.edge_at(azimuth),
             near: self.near.iter().map(|f| f.at(azimuth)).collect(),
@@ -167,25 +172,24 @@ impl FreeWake {
             }
             for i in 0..self.settings.azimuths {
                 let at = f.index(i, 0)..=f.index(i, f.steps);
-                self.add_arcs_of(f.at(i), i, circulation, &peaks, &mut v[at]);
+                self.add_arcs_of(f.at(i), self.periodic(i), circulation, &peaks, &mut v[at]);
             }
         }
     }
 
-    /// The same for the tip vortex of one blade at an azimuth.
+    /// The same for the tip vortex of one blade.
     pub(super) fn add_arcs_of(
         &self,
         points: &[Vec3],
-        azimuth: usize,
+        past: Past,
         circulation: &CirculationMap,
         peaks: &[usize],
         v: &mut [Vec3],
     ) {
-        let azimuths = self.settings.azimuths;
         // the core at release: with grown ones the wake of a two-bladed rotor in hover does not settle
         let radius = self.settings.core.radius.max(self.settings.core.mutual_radius);
         for (k, arc) in points.windows(3).enumerate() {
-            let release = (azimuth + azimuths - (k + 1) % azimuths) % azimuths;
+            let release = past.row(k + 1);
             let strength = circulation.row(release)[peaks[release]];
             let arc = [arc[0], arc[1], arc[2]];
             v[k + 1] = add(v[k + 1], arc_velocity(arc, strength, radius));

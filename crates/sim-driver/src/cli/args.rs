@@ -525,9 +525,15 @@ pub struct WakeArgs {
     /// Advance ratio instead of the case's.
     #[arg(long, value_name = "MU")]
     pub mu: Option<f64>,
-    /// Folder for geometry (CSV, VTK legacy), inflow over the disk and convergence.
+    /// Folder for geometry (CSV, VTK legacy), inflow over the disk and convergence; in time, for the revolutions (CSV).
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// March rotor and wake in time and measure the means of so many revolutions: where no wake is periodic.
+    #[arg(long, value_name = "REVOLUTIONS", num_args = 0..=1, require_equals = true, default_missing_value = "40")]
+    pub in_time: Option<usize>,
+    /// Revolutions of the march before it is measured.
+    #[arg(long, value_name = "REVOLUTIONS", default_value_t = 24, requires = "in_time")]
+    pub settling: usize,
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,

@@ -5,6 +5,7 @@ use super::{
     case_or_paper, check_advance_ratio, check_range, overridden, refuse_inputs, warn, write_texts,
 };
 use crate::SimError;
+use crate::case::LoadedCase;
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, print};
 use crate::print::{modes_of_case, root_pitch_of_case, wake_files};
@@ -13,6 +14,7 @@ use crate::progress::Progress;
 use crate::sweep::at_advance_ratio;
 use crate::sweep::refuse_diverged;
 use rotor_fem::GyroscopicTerms;
+use rotor_flight::{InTimeQuestion, wake_in_time, wake_in_time_csv};
 use rotor_study::{AboutState, FAN_SPEEDS, ModesQuestion};
 use study_text::fan_csv;
 
@@ -55,6 +57,9 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     if let Some(folder) = &args.out {
         refuse_unwritable(folder)?;
     }
+    if let Some(revolutions) = args.in_time {
+        return in_time(&loaded, revolutions, args);
+    }
     let (result, files) = Progress::during("free wake and trim", || wake_files(&loaded))?;
     warn(&result.warnings, Format::Details);
     if let Some(folder) = &args.out {
@@ -62,6 +67,32 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     }
     print(&result.render(args.format)?)?;
     refuse_diverged(&loaded, result.diverged)
+}
+
+/// Rotor and wake marched in time.
+fn in_time(loaded: &LoadedCase, revolutions: usize, args: &WakeArgs) -> Result<(), SimError> {
+    let mut problems = Problems::default();
+    let remedy = "revolutions to measure, some tens";
+    check_range(&mut problems, "--in-time", revolutions as f64, [10.0, 1e5], "", remedy);
+    let remedy = "revolutions in which the wake forgets how it began";
+    check_range(&mut problems, "--settling", args.settling as f64, [0.0, 1e5], "", remedy);
+    problems.into_result(Some(()))?;
+    let question = InTimeQuestion { settling: args.settling, revolutions };
+    let progress = Progress::new(1 + args.settling + revolutions);
+    progress.doing("trim, then rotor and wake in time");
+    let found = wake_in_time(&loaded.case, question, &mut |done, _| {
+        progress.begin(1 + done, "rotor and wake in time");
+    });
+    progress.finish();
+    let doubts = || loaded.in_words(loaded.case.value_warnings());
+    let mut found = found.map_err(|error| loaded.located(error).in_doubt(doubts()))?;
+    found.result.warnings.splice(0..0, doubts());
+    warn(&found.result.warnings, Format::Details);
+    if let Some(folder) = &args.out {
+        let history = wake_in_time_csv(&found.history);
+        write_texts(folder, vec![("in_time.csv".to_owned(), history)])?;
+    }
+    print(&found.result.render(args.format)?)
 }
 
 pub(super) fn root_pitch(args: &RootPitchArgs) -> Result<(), SimError> {

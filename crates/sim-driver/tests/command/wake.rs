@@ -235,3 +235,46 @@ fn the_number_of_threads_changes_no_byte() {
     assert_eq!(one, two);
     assert_eq!(one, four);
 }
+
+/// A march ends near the periodic wake where there is one, and writes every revolution.
+#[test]
+fn a_rotor_and_its_wake_are_marched_in_time() {
+    let place = Place::new();
+    place.write("case.ron", &small_case());
+    let args = ["wake", "case.ron", "--mu", "0.25", "--in-time=10", "--settling", "2"];
+    let text = place.hhc(&[&args[..], &["--out", "wake"]].concat()).done();
+    for part in ["in time at mu 0.250", "10 of 12 revolutions", "12 of the wake, 288 of the blades"]
+    {
+        assert!(text.contains(part), "no `{part}` in\n{text}");
+    }
+    let rows = place.read("wake/in_time.csv");
+    let head = "revolution,measured,theta0_deg,theta1c_deg,theta1s_deg,mean_inflow,fx_mean,";
+    assert!(rows.starts_with(head) && !rows.contains("NaN"), "{rows}");
+    let count =
+        |measured: &str| rows.lines().filter(|r| r.split(',').nth(1) == Some(measured)).count();
+    assert_eq!([count("0"), count("1")], [2, 10], "{rows}");
+    let found = place.hhc(&[&args[..], &["--format", "json"]].concat()).json();
+    let inflow = &found["inflow"][0];
+    let [mean, periodic] = ["mean", "periodic"].map(|key| inflow[key].as_f64().unwrap());
+    assert!((mean / periodic - 1.0).abs() < 0.05, "{inflow}");
+}
+
+#[test]
+fn what_is_not_marched_is_refused() {
+    let place = Place::new();
+    for (wake, part) in [
+        ("FreeWake(circulation: Prescribed())", "prescribed circulation"),
+        ("FreeWake(symmetry: Axial)", "inflow.model.symmetry"),
+    ] {
+        let inflow = format!("(model: {wake})");
+        let case = QUICK_CASE.replace("(model: Uniform)", &inflow);
+        place.write("case.ron", &case.replace("advance_ratio: 0.2", "advance_ratio: 0.0"));
+        place.hhc(&["wake", "case.ron", "--in-time"]).rejected(&[part]);
+    }
+    place.write("case.ron", &small_case());
+    place.hhc(&["wake", "case.ron", "--in-time=3"]).rejected(&["--in-time", "10 to"]);
+    let stalling = small_case().replace("QuasiSteady,", "QuasiSteady, dynamic_stall: Naca0012,");
+    place.write("case.ron", &stalling);
+    let refused = place.hhc(&["wake", "case.ron", "--in-time"]);
+    refused.rejected(&["dynamic_stall", "not marched"]);
+}

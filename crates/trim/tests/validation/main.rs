@@ -1,10 +1,16 @@
 //! Rows of the validation page: the trimmed rotor.
 
+mod in_time;
 mod trim_reference;
 mod trimmed;
 mod wake_trim;
 
 use validation::hold;
+
+#[test]
+fn in_time_rows() {
+    hold(in_time::ROWS);
+}
 
 #[test]
 fn trimmed_rows() {

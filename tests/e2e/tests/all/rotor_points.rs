@@ -86,7 +86,7 @@ fn lag_deg(actuator: &Arc<ActuatorModel>) -> f64 {
         model: Arc::clone(actuator),
         range_volt: VoltageRange::new(low, high).unwrap(),
         rev_hz: case.actuator.bench_rev_hz,
-        bias_volt: case.control.bias_volt,
+        bias: case.control.drive_bias(),
     };
     let middle = Harmonic { cosine: MIDDLE_VOLT, sine: 0.0 };
     let moved = drive.motion(&[(3, middle)]).unwrap().flap_deg.harmonic(3);

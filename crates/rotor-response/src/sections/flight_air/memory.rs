@@ -1,6 +1,7 @@
 //! What the lags of a station remember: their periodic states beyond those settled on their inputs.
 
-use super::{FlightAir, StationAir, StationLag};
+use super::{Channels, FlightAir, StationAir};
+use crate::sections::station_lag::{SectionChannel, StationLag};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use rotor_base::LANES;
@@ -65,6 +66,14 @@ impl FlightAir {
 }
 
 impl StationAir {
+    /// The lags with states over a revolution; none of an instant.
+    fn round(&self) -> &[StationLag] {
+        match &self.channels {
+            Channels::Round(lags, _) => lags,
+            Channels::Passing(_) => &[],
+        }
+    }
+
     fn lift_slope(&self) -> DMatrix<f64> {
         let points = self.points;
         let mut slope = DMatrix::zeros(points, points);
@@ -74,10 +83,12 @@ impl StationAir {
                 slope[(p, p)] = self.prompt[p / LANES].direct[0][0].0[p % LANES];
             }
         }
-        let makes = |lag: &&StationLag| lag.input[0] != 0.0 && (lag.circulatory || !has_waves);
-        for channel in self.lags.iter().filter(makes) {
+        let makes = |lag: &&StationLag| {
+            lag.channel.input[0] != 0.0 && (lag.channel.circulatory || !has_waves)
+        };
+        for StationLag { channel, lag } in self.round().iter().filter(makes) {
             for (_, gains) in channel.gains.iter().filter(|(output, _)| *output == 0) {
-                let operator = channel.lag.operator();
+                let operator = lag.operator();
                 for (mut sums, column) in slope.column_iter_mut().zip(operator.column_iter()) {
                     for ((sum, gain), value) in sums.iter_mut().zip(gains).zip(&column) {
                         *sum += gain * value * channel.input[0];
@@ -90,7 +101,7 @@ impl StationAir {
 
     fn channels(&self) -> Vec<LagChannel> {
         let points = self.points;
-        let of = |lag: &StationLag| {
+        let of = |lag: &SectionChannel| {
             let mut gains = vec![[0.0; 2]; points];
             for (output, along) in lag.gains.iter().filter(|(output, _)| *output < 2) {
                 for (gain, value) in gains.iter_mut().zip(along) {
@@ -102,7 +113,7 @@ impl StationAir {
             let idle = nothing(&input) || gains.iter().all(nothing);
             (!idle).then(|| LagChannel { rates: lag.rates.clone(), input, gains })
         };
-        self.lags.iter().filter_map(of).collect()
+        self.round().iter().filter_map(|lag| of(&lag.channel)).collect()
     }
 
     fn memory(&self) -> Option<StationMemory> {
@@ -110,14 +121,14 @@ impl StationAir {
         let zero = || DMatrix::zeros(points, points);
         let mut kernels = [[zero(), zero()], [zero(), zero()]];
         let mut any = false;
-        for channel in &self.lags {
+        for StationLag { channel, lag } in self.round() {
             let inputs = [channel.input[0], channel.input[1]];
             let outputs = || channel.gains.iter().filter(|(output, _)| *output < 2);
             if inputs.iter().all(|v| *v == 0.0) || outputs().next().is_none() {
                 continue;
             }
             any = true;
-            let mut beyond = channel.lag.operator();
+            let mut beyond = lag.operator();
             for p in 0..points {
                 beyond[(p, p)] -= 1.0;
             }
