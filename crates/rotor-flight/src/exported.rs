@@ -209,7 +209,7 @@ pub(crate) fn load_axis(labels: Vec<String>) -> Axis {
 }
 
 /// What a case with blades unlike the rest is told.
-pub(crate) fn dissimilar_note(case: &Case) -> Option<String> {
+pub fn dissimilar_note(case: &Case) -> Option<String> {
     let told = "`rotor.dissimilar_blades` is left out: all blades are alike here.";
     (!case.rotor.dissimilar_blades.is_empty()).then(|| told.to_owned())
 }

@@ -30,7 +30,7 @@ mod wake_in_time_text;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
 pub use error::FlightError;
-pub use exported::{controllers_of_case, exported_case};
+pub use exported::{controllers_of_case, dissimilar_note, exported_case};
 pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};

@@ -1,5 +1,6 @@
 //! A case marched in time with its free wake, where none is periodic: means, and how sure they are.
 
+use crate::exported::dissimilar_note;
 use rotor_study::case::{Case, CirculationChoice, DynamicStallChoice, InflowChoice, InflowValues};
 use rotor_study::{HubLoads, StudyError, TrimmedRotor, wake_warnings};
 use rotor_wake::{FlightState, WakeSymmetry, momentum_inflow};
@@ -229,9 +230,7 @@ fn warnings(
     // how the start ended matters only where it is compared with
     let begun = trimmed.wake().filter(|wake| wake.outcome.is_diverged());
     let mut out: Vec<String> = begun.map(wake_warnings).unwrap_or_default();
-    if !case.rotor.dissimilar_blades.is_empty() {
-        out.push("rotor.dissimilar_blades: all blades are marched as like ones".to_owned());
-    }
+    out.extend(dissimilar_note(case));
     let wanted = case.inflow.model.free_wake().map(|file| case.wake_trim_settings(&file).wake);
     if let Some(wanted) = wanted.filter(|w| w.azimuths != found.end.steps_per_revolution()) {
         out.push(format!(

@@ -101,13 +101,27 @@ pub fn settled_trim(
 }
 
 /// What may help a wake that does not settle.
-const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used; at advance ratios below 0.1, where there may be no periodic wake, `hhc wake CASE.ron --in-time`";
+const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used, or means in time, `hhc wake CASE.ron --in-time`";
+/// The same at low speed, where wider cores do not help.
+const SLOW_WAKE_REMEDY: &str = "Remedy: at this speed there may be no periodic wake; `hhc wake CASE.ron --in-time` has the means of one in time";
+/// Advance ratio below which a speed is low.
+const LOW_SPEED: f64 = 0.1;
+
+/// What may help the wake of a flight.
+fn remedy(flight: &FlightState) -> &'static str {
+    if flight.advance_ratio < LOW_SPEED { SLOW_WAKE_REMEDY } else { WAKE_REMEDY }
+}
 
 /// Mean inflow over that of momentum theory, least and most, that a rotor in its wake has.
 const MOMENTUM: [f64; 2] = [0.5, 2.5];
 
 /// Where a coupling that failed has stopped, on a grid of so many steps per revolution.
-fn kept(azimuths: usize, updates: usize, inflow_change: f64, error: &TrimError) -> String {
+fn kept(
+    azimuths: usize,
+    (updates, inflow_change): (usize, f64),
+    error: &TrimError,
+    remedy: &str,
+) -> String {
     let error = match error {
         TrimError::Response(ResponseError::Wake(wake)) => wake.to_string(),
         error => error.to_string(),
@@ -121,7 +135,7 @@ fn kept(azimuths: usize, updates: usize, inflow_change: f64, error: &TrimError) 
             "what is given is the last state before, on {azimuths} steps per revolution: of a coarser grid if the case asks for more"
         )
     };
-    format!("wake and trim part after {updates} updates: {error}; {state}. {WAKE_REMEDY}")
+    format!("wake and trim part after {updates} updates: {error}; {state}. {remedy}")
 }
 
 /// How the coupling with a wake ended, in a word.
@@ -136,7 +150,7 @@ pub fn wake_status(wake: &WakeTrim) -> WakeStatus {
 /// What a user should know about a wake; empty if there is nothing.
 pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
     let mut warnings = Vec::new();
-    let azimuths = wake.wake.settings().azimuths;
+    let (azimuths, remedy) = (wake.wake.settings().azimuths, remedy(&wake.trim.flight));
     match &wake.outcome {
         WakeOutcome::NotSettled {
             updates,
@@ -148,14 +162,14 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
         } => {
             let [low, high] = theta0_band_rad.map(f64::to_degrees);
             warnings.push(format!(
-                "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, on {azimuths} steps per revolution. {WAKE_REMEDY}"
+                "the free wake has not settled in {updates} updates: the inflow still changes by {inflow_change:.1e} of the tip speed ({tolerance:.1e} was asked) and the wake moves by {displacement:.1e} R ({displacement_tolerance:.1e}) in the update kept, the nearest to rest; theta0 between {low:.3} and {high:.3} deg in it and the second half of the updates, which is no bound, on {azimuths} steps per revolution. {remedy}"
             ));
         }
         WakeOutcome::TooLittleInflow { of_momentum } => warnings.push(format!(
             "the free wake carries hardly any of the thrust: its mean inflow is {of_momentum:.2} of momentum theory's. What is given is no solution. Remedy: more thrust where blades carry lift of both senses along the span; look at the circulation of the sections (`hhc wake --out DIR`), or compare with inflow.model: Uniform"
         )),
         WakeOutcome::Failed { updates, inflow_change, error } => {
-            warnings.push(kept(azimuths, *updates, *inflow_change, error));
+            warnings.push(kept(azimuths, (*updates, *inflow_change), error, remedy));
         }
         _ => {}
     }

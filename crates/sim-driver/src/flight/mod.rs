@@ -14,7 +14,8 @@ use crate::progress::Progress;
 use preisach_dyn::ActuatorModel;
 use report_page::Section;
 use rotor_flight::{
-    FailureStudy, FlightError, FlownCase, FlownController, failures_of_case, fly_case,
+    FailureStudy, FlightError, FlownCase, FlownController, dissimilar_note, failures_of_case,
+    fly_case,
 };
 use serde::Serialize;
 
@@ -67,7 +68,10 @@ pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, S
     let scales = case.scales();
     Ok(FlightResult {
         title: case.title.clone(),
-        notes: notes(values, &actuators.data_title),
+        notes: notes(values, &actuators.data_title)
+            .into_iter()
+            .chain(dissimilar_note(case))
+            .collect(),
         warnings: [&loaded.warnings[..], &actuators.warnings[..]].concat(),
         harmonics: values.harmonics.clone(),
         blades: case.rotor.blades,

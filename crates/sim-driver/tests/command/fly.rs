@@ -22,6 +22,18 @@ fn rows(csv: &str) -> Vec<std::collections::BTreeMap<&str, &str>> {
     lines.map(|line| names.iter().copied().zip(line.split(',')).collect()).collect()
 }
 
+/// Blades unlike the rest are not flown as such, and that is said.
+#[test]
+fn a_flight_of_dissimilar_blades_says_that_it_leaves_them_out() {
+    let place = flying(FLIGHT);
+    let said = |place: &Place| place.hhc(&["fly", "case.ron"]).done();
+    assert!(!said(&place).contains("dissimilar_blades"));
+    let case = place.read("case.ron");
+    let unlike = "rotor: (dissimilar_blades: [(blade: 2, mass: 1.02)]),\n    structure:";
+    place.write("case.ron", &case.replacen("structure:", unlike, 1));
+    assert!(said(&place).contains("`rotor.dissimilar_blades` is left out"));
+}
+
 #[test]
 fn a_flight_is_told_drawn_and_tabled() {
     let place = flying(FLIGHT);
