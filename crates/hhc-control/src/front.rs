@@ -38,6 +38,8 @@ pub struct FrontPoint {
 /// Decades of the weight about the one that balances the ends, to either side, and weights in each.
 const DECADES: i32 = 3;
 const WEIGHTS_PER_DECADE: i32 = 4;
+/// Singular value of the weighted T over the largest, below which a control is not answered.
+const NO_ANSWER: f64 = 1e-9;
 /// Weight, over the balancing one, that chooses among controls alike in the cost that an end is the least of.
 const AMONG_EQUALS: f64 = 1e-6;
 /// A point nearer to the one before it than this, as a part of the front's extent in both costs, is left out.
@@ -79,7 +81,7 @@ impl FeedbackLaw {
         let zero = vec![0.0; self.t().controls()];
         let least_effort = |law: &FeedbackLaw| {
             let largest = law.singular_values().first().map_or(0.0, |s| s * s);
-            if law.has_surplus_controls() { AMONG_EQUALS * largest } else { 0.0 }
+            if has_choice(law) { AMONG_EQUALS * largest } else { 0.0 }
         };
         let found = self.optimum_within(least_effort(self), &zero, at_rest, limits)?;
         let mut best = traded.point(found.control_volt, 0.0, found.kkt.largest())?;
@@ -89,10 +91,10 @@ impl FeedbackLaw {
         if !(balance.is_finite() && balance > 0.0) {
             return Ok(vec![best]);
         }
-        if self.has_surplus_controls() {
+        if has_choice(self) {
             best = FrontPoint { weight: 0.0, ..traded.at(AMONG_EQUALS * balance)? };
         }
-        if whole.has_surplus_controls() {
+        if has_choice(&whole) {
             let found = traded.at(balance / AMONG_EQUALS)?;
             least = FrontPoint { weight: f64::INFINITY, ..found };
         }
@@ -112,6 +114,15 @@ impl FeedbackLaw {
         front.push(best);
         Ok(front)
     }
+}
+
+/// Whether other controls have the same weighted loads: more of them than the weighted T has singular values that count. A
+/// weight of zero takes a row away.
+fn has_choice(law: &FeedbackLaw) -> bool {
+    let values = law.singular_values();
+    let largest = values.first().copied().unwrap_or(0.0);
+    let rank = values.iter().filter(|value| **value > NO_ANSWER * largest).count();
+    rank < law.t().controls()
 }
 
 /// Two costs within limits.

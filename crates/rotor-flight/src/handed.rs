@@ -137,6 +137,13 @@ fn agrees(array: &str, found: &Axis, expected: &Axis) -> Result<(), FlightError>
             )));
         }
     }
+    if found.units.len() != expected.units.len() {
+        return Err(wrong(format!(
+            "array `{array}` has {} units of its {what}s, expected {}",
+            found.units.len(),
+            expected.units.len()
+        )));
+    }
     for ((label, found), expected) in found.labels.iter().zip(&found.units).zip(&expected.units) {
         if found != expected {
             return Err(wrong(format!(

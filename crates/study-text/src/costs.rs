@@ -13,6 +13,8 @@ const SHOWN_POINTS: usize = 6;
 /// What is said where the case gives no capacitance.
 const NO_CAPACITANCE: &str =
     "No capacitance given: `actuator.capacitance_uF` of the data sheet gives the electrical power.";
+/// What stands where there is no load line.
+const NO_LOAD_LINE: &str = " No load line: it takes actuator.blocked_force_N and actuator.free_stroke_um, and an identified linkage.";
 
 fn three(value: f64) -> String {
     format!("{value:.3}")
@@ -53,6 +55,8 @@ fn flap_section(costs: &[ControlCost]) -> Section {
     if load_line {
         header.extend(["of blocked force", "of load line"]);
         text.push_str(" Shares of the load line above 1 are beyond the actuator.");
+    } else {
+        text.push_str(NO_LOAD_LINE);
     }
     let rows = costs.iter().flat_map(|cost| {
         cost.flaps.iter().enumerate().map(move |(k, flap)| {
@@ -60,7 +64,11 @@ fn flap_section(costs: &[ControlCost]) -> Section {
                 set_name(&cost.harmonics),
                 cost.actuator.clone(),
                 flap_name(k),
-                format!("{:.4}", cost.cost_ratio),
+                if cost.cost_ratio.is_finite() {
+                    format!("{:.4}", cost.cost_ratio)
+                } else {
+                    "-".to_owned()
+                },
                 three(flap.given_watt),
                 three(flap.net_watt),
                 three(flap.peak_hinge_newton_metre),
@@ -104,7 +112,7 @@ fn blade_section(costs: &[ControlCost]) -> Section {
             format!("{} {}", load.load, load.unit),
             format!("{own:.1}"),
             format!("{rest:.1}"),
-            three(load.ratio()),
+            optional(Some(load.ratio()).filter(|ratio| ratio.is_finite())),
         ];
         let shown = load.amplitudes.iter().take(SHOWN_HARMONICS);
         row.extend(shown.map(|[rest, own]| format!("{own:.1} ({rest:.1})")));
@@ -131,8 +139,8 @@ pub fn front_sections(fronts: &[FrontLine]) -> Vec<Section> {
 /// Name of the cost of a front with its unit.
 pub fn front_axis(against: FrontAgainst) -> String {
     match against {
-        FrontAgainst::Power => "actuation power of one blade, W".to_owned(),
-        FrontAgainst::PitchLink | FrontAgainst::RootFlap => {
+        FrontAgainst::Power => "power of the pairs of one blade (C.13), W".to_owned(),
+        FrontAgainst::RootTorsion | FrontAgainst::RootFlap => {
             format!("{}, rms, N m", against.name())
         }
     }
@@ -353,7 +361,7 @@ mod tests {
         // no control is the first point of a front of power, and stands before one of a load
         assert_eq!(sections[0].rows.len(), SHOWN_POINTS);
         let load = FrontLine {
-            against: FrontAgainst::PitchLink,
+            against: FrontAgainst::RootTorsion,
             at_rest: state(1.0, 5.0),
             ..line.clone()
         };

@@ -74,8 +74,8 @@ pub struct Tally {
     /// That input, where it is longer than [`SLOW_S`].
     #[serde(skip)]
     pub slow: Option<Vec<u8>>,
-    /// The first input at which it panicked.
-    #[serde(skip)]
+    /// The first input at which it panicked: a run that goes on still fails.
+    #[serde(default)]
     pub panicked: Option<Vec<u8>>,
 }
 
@@ -143,7 +143,10 @@ pub fn fuzz(root: &Path, options: &Options) -> Result<Vec<Tally>, XtaskError> {
     };
     let ends: Vec<Result<(), XtaskError>> = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..options.threads.max(1)).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().filter_map(|worker| worker.join().ok()).collect()
+        let joined = workers
+            .into_iter()
+            .map(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
+        joined.collect()
     });
     ends.into_iter().collect::<Result<(), XtaskError>>()?;
     *lock(&shared.noted) = begun.checked_sub(NOTED_EVERY).unwrap_or(begun);

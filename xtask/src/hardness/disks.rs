@@ -55,8 +55,8 @@ pub fn fill(program: &Path) -> Result<Vec<Tried>, XtaskError> {
         place.said(arguments)?;
         let whole = place.files("out");
         files::remove_folder(&place.path().join("out"))?;
-        let may_mount =
-            shell(&place, "unshare -rm true", &[]).is_ok_and(|(code, _)| code == Some(0));
+        let probe = "mkdir -p out && unshare -rm mount -t tmpfs none out";
+        let may_mount = shell(&place, probe, &[]).is_ok_and(|(code, _)| code == Some(0));
         let mounted = |options: &str| {
             format!(
                 "mkdir -p out kept; exec unshare -rm sh -c 'mount -t tmpfs -o {options} none out && \

@@ -98,7 +98,7 @@ impl Victim<'_> {
                 .faults
                 .push(format!("{what} run again: {name} differs from an undisturbed run"));
         }
-        self.found.unfinished = self.place.unfinished("out");
+        self.found.unfinished += self.place.unfinished("out");
     }
 }
 

@@ -106,6 +106,28 @@ fn the_ends_are_no_control_and_the_optimum() {
     }
 }
 
+/// Where two loads alone have a weight, many controls take them away: the end of the front is the one of them that costs least,
+/// by Lagrange's multipliers in closed form.
+#[test]
+fn among_controls_that_take_the_weighted_loads_away_the_cheapest_ends_the_front() {
+    let problem = problem();
+    let mut weights = vec![0.0; 12];
+    (weights[4], weights[5]) = (1.0, 1.0);
+    let law = FeedbackLaw::new(&as_t(&problem.t), &LoadWeights::Diagonal(weights)).unwrap();
+    let front = law.front(&z0(&problem), &power(), &limits(1e3)).unwrap();
+    let t = problem.t.rows(4, 2).into_owned();
+    let weight = DMatrix::from_diagonal(&DVector::from_column_slice(&[0.49, 0.49, 3.61, 3.61]));
+    let cheap = weight.try_inverse().unwrap() * t.transpose();
+    let exact = -&cheap * (&t * &cheap).lu().solve(&problem.z0.rows(4, 2).into_owned()).unwrap();
+    let last = front.last().unwrap();
+    let found = DVector::from_column_slice(&last.control_volt);
+    assert!((&found - &exact).norm() < 1e-3 * exact.norm(), "{found} {exact}");
+    assert!(last.loads_cost < 1e-6 * front[0].loads_cost, "{last:?}");
+    let any = law.optimum_within(0.0, &[0.0; 4], &z0(&problem), &limits(1e3)).unwrap();
+    let any = power().at(&any.control_volt).unwrap();
+    assert!(any > 1.05 * last.second_cost, "{any} {}", last.second_cost);
+}
+
 /// Nothing that chance finds within the limits is better in both costs, and some of it comes near.
 #[test]
 fn no_control_within_the_limits_dominates() {

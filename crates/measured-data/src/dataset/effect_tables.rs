@@ -281,8 +281,8 @@ impl Reading<'_> {
                 self.problems.push(path("range"), Fault::Other(message));
             }
         }
-        effects.retain(|own| self.folder.leads_out(&own.file()).is_none());
         let listed: Vec<String> = effects.iter().map(EffectFile::file).collect();
+        effects.retain(|own| self.folder.leads_out(&own.file()).is_none());
         for file in files.iter().filter(|file| !listed.contains(file)) {
             let name = file.trim_start_matches(EFFECT).trim_end_matches(TABLE).to_owned();
             let message = format!(

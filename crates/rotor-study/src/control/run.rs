@@ -145,7 +145,9 @@ impl ControlSet<'_> {
         let is_handed = self.handed_t(actuator, &plant)?.is_some();
         let way = match (actuator, control.controller) {
             // a T that is handed in is held, and never identified again
-            (_, ControllerChoice::Global) if is_handed => Controller::Global,
+            (_, ControllerChoice::Global | ControllerChoice::Adaptive) if is_handed => {
+                Controller::Global
+            }
             // the ideal actuator has nearly one T everywhere: at limits that bind even the rotor's own bend shows
             (ControlActuator::Ideal, ControllerChoice::Global | ControllerChoice::Adaptive) => {
                 Controller::Global

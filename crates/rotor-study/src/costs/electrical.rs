@@ -1,7 +1,7 @@
 //! Electrical power of a piezo over a revolution.
 //!
 //! ```text
-//! apparent   S = sum_n 2 pi f_n C U_n^2 / 2,   f_n = n Omega / (2 pi)          U_n: amplitude of the voltage at n per rev
+//! apparent   S = V_rms I_rms = (Omega C / 2) sqrt( sum_n U_n^2  sum_n n^2 U_n^2 )     U_n: amplitude of the voltage at n per rev
 //! current    I = C dV/dt
 //! loss       P = (Omega / 2 pi) (C / g) loop integral of V d(delta) = (Omega C / 2 g) sum_n n (V_nc delta_ns - V_ns delta_nc)
 //!            g = sum_n (V_nc delta_nc + V_ns delta_ns) / sum_n U_n^2
@@ -23,13 +23,15 @@ const AZIMUTHS: usize = 720;
 /// Electrical power of one piezo.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ElectricalPower {
-    /// Apparent power, which the amplifier gives and takes back, VA.
+    /// Apparent power of the alternating part, which the amplifier gives and takes back, VA: root mean squares of voltage about its
+    /// mean and of current. The mean voltage adds to what the amplifier has to hold, not to this.
     #[serde(rename = "apparent_VA")]
     pub apparent_voltampere: f64,
     /// Largest size of the current, A.
     #[serde(rename = "peak_current_A")]
     pub peak_current_ampere: f64,
-    /// Mean power lost in the static hysteresis, W; none of an actuator without a loop, or one whose output does not follow its voltage.
+    /// Mean power lost in the static hysteresis, W, 0 or more; none of an actuator without a loop, or one whose output does not
+    /// follow its voltage or leads it.
     #[serde(rename = "loss_W")]
     pub loss_watt: Option<f64>,
 }
@@ -38,7 +40,7 @@ pub struct ElectricalPower {
 ///
 /// | argument | symbol | unit | range |
 /// |---|---|---|---|
-/// | `voltage_volt` | `V` | V | its mean has no part in the power |
+/// | `voltage_volt` | `V` | V | its mean has no part in mean power and current |
 /// | `law_deg` | `delta` | deg, or any unit of displacement | none of an actuator without hysteresis |
 /// | `capacitance_farad` | `C` | F | > 0 |
 /// | `omega_rad_s` | `Omega` | rad/s | > 0 |
@@ -50,7 +52,9 @@ pub fn electrical_power(
 ) -> ElectricalPower {
     let count = voltage_volt.harmonics.len();
     let harmonics = || (1..=count).map(|n| (n, n as f64, voltage_volt.harmonic(n)));
-    let energy: f64 = harmonics().map(|(_, n, u)| n * u.amplitude() * u.amplitude()).sum();
+    let squares = |power: i32| -> f64 {
+        harmonics().map(|(_, n, u)| n.powi(power) * u.amplitude() * u.amplitude()).sum()
+    };
     let rate = voltage_volt.derivative();
     let largest = uniform_azimuths_rad(AZIMUTHS)
         .into_iter()
@@ -64,11 +68,16 @@ pub fn electrical_power(
             in_phase += u.cosine * delta.cosine + u.sine * delta.sine;
             square += u.cosine * u.cosine + u.sine * u.sine;
         }
-        let follows = in_phase > 0.0 && square > 0.0;
-        follows.then(|| 0.5 * omega_rad_s * capacitance_farad * area * square / in_phase)
+        // rounding aside, a loop that loses nothing has no area
+        let follows = in_phase > 0.0 && square > 0.0 && area >= -1e-12 * in_phase;
+        let scale = 0.5 * omega_rad_s * capacitance_farad;
+        follows.then(|| scale * area.max(0.0) * square / in_phase)
     });
     ElectricalPower {
-        apparent_voltampere: 0.5 * omega_rad_s * capacitance_farad * energy,
+        apparent_voltampere: 0.5
+            * omega_rad_s
+            * capacitance_farad
+            * (squares(0) * squares(2)).sqrt(),
         peak_current_ampere: capacitance_farad * omega_rad_s * largest,
         loss_watt,
     }
@@ -95,22 +104,26 @@ mod tests {
         series
     }
 
-    /// A capacitor takes and gives back: no loss, `2 pi f C U^2 / 2`, summed over the harmonics.
+    /// A capacitor takes and gives back: no loss, and the product of the root mean squares of voltage and current, sample by sample.
     #[test]
     fn a_capacitor_has_apparent_power_and_no_loss() {
         let voltage = wave(&[(3, 30.0, -40.0), (5, 0.0, 10.0)]);
         let charge = HarmonicSeries { mean: 0.0, ..voltage.clone() };
         let found = electrical_power(&voltage, Some(&charge), CAPACITANCE, OMEGA);
-        let of = |n: f64, volt: f64| TAU * (n * OMEGA / TAU) * CAPACITANCE * volt * volt / 2.0;
-        let exact = of(3.0, 50.0) + of(5.0, 10.0);
-        assert!((found.apparent_voltampere / exact - 1.0).abs() < 1e-14);
+        let rate = voltage.derivative();
+        let rms = |of: &dyn Fn(f64) -> f64| {
+            let squares = uniform_azimuths_rad(360).into_iter().map(|psi| of(psi).powi(2));
+            (squares.sum::<f64>() / 360.0).sqrt()
+        };
+        let exact = rms(&|psi| voltage.value(psi) - voltage.mean)
+            * rms(&|psi| CAPACITANCE * OMEGA * rate.value(psi));
+        assert!((found.apparent_voltampere / exact - 1.0).abs() < 1e-12);
         assert!(found.loss_watt.unwrap().abs() < 1e-14 * exact, "{found:?}");
         let alone = electrical_power(&wave(&[(3, 30.0, -40.0)]), None, CAPACITANCE, OMEGA);
         let peak = CAPACITANCE * 3.0 * OMEGA * 50.0;
         assert!((alone.peak_current_ampere / peak - 1.0).abs() < 1e-4, "{alone:?}");
         assert_eq!(alone.loss_watt, None);
         // mean power of V I over a revolution, sample by sample
-        let rate = voltage.derivative();
         let power = |psi: f64| voltage.value(psi) * CAPACITANCE * OMEGA * rate.value(psi);
         let mean = uniform_azimuths_rad(360).into_iter().map(power).sum::<f64>() / 360.0;
         assert!(mean.abs() < 1e-12 * exact, "{mean}");
@@ -119,7 +132,7 @@ mod tests {
     /// A lag of the charge by a loss angle: `pi f C U^2 tan(angle)`.
     #[test]
     fn a_loss_angle_gives_its_tangent() {
-        for (n, angle) in [(2, 0.02_f64), (4, 0.3), (4, -0.1)] {
+        for (n, angle) in [(2, 0.02_f64), (4, 0.3)] {
             let voltage = wave(&[(n, 36.0, 48.0)]);
             let of_lag = Harmonic::from_amplitude_phase(7.0, f64::atan2(48.0, 36.0) + angle);
             let law = wave(&[(n, of_lag.cosine, of_lag.sine)]);
@@ -129,7 +142,10 @@ mod tests {
             let loss = found.loss_watt.unwrap();
             assert!((loss / exact - 1.0).abs() < 1e-13, "{loss} {exact}");
         }
-        // a charge that goes against its voltage is none
+        // a charge that leads its voltage, or goes against it, is none
+        let leading = wave(&[(2, 7.0, -0.7)]);
+        let found = electrical_power(&wave(&[(2, 1.0, 0.0)]), Some(&leading), 1e-6, OMEGA);
+        assert_eq!(found.loss_watt, None);
         let found =
             electrical_power(&wave(&[(2, 1.0, 0.0)]), Some(&wave(&[(2, -1.0, 0.1)])), 1e-6, OMEGA);
         assert_eq!(found.loss_watt, None);

@@ -39,10 +39,10 @@ pub struct FlapCost {
 /// Force and stroke of an actuator over its blocked force `F_b` and its free stroke `x_f`.
 ///
 /// ```text
-/// F = H / a,   x = delta a,   a = 1 / (deg_per_um in rad/m)      |F| / F_b + |x - x_mean| / (x_f / 2) <= 1
+/// F = H / a,   x = delta a,   a = 1 / (deg_per_um in rad/m)      2 |F| / F_b + |x - x_mean| / (x_f / 2) <= 1
 /// ```
-/// `a` is the lever of the linkage. On its load line an actuator that swings about the middle of its voltages gives up to
-/// `x_f / 2` to either side where nothing holds it, and less in proportion to what does.
+/// `a` is the lever of the linkage, and `F_b / x_f` the stiffness, both over the whole range of voltages. An actuator that swings
+/// about the middle of them gives `x_f / 2` to either side where nothing holds it, and `F_b / 2` where it is blocked.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct LoadLineUse {
     /// Largest force over the blocked force.
@@ -90,7 +90,7 @@ impl FlapCost {
                 let stroke = 2.0 * swing_rad / lever.abs() / free;
                 line.force_share = line.force_share.max(force);
                 line.stroke_share = line.stroke_share.max(stroke);
-                line.load_line_share = line.load_line_share.max(force + stroke);
+                line.load_line_share = line.load_line_share.max(2.0 * force + stroke);
             }
         }
         let is_known = piezo.blocked_and_free.is_some() && piezo.rad_per_metre.is_some();
@@ -141,6 +141,6 @@ mod tests {
         let force = 2.0 * 0.04e6_f64.to_radians() / 500.0;
         assert!((line.force_share / force - 1.0).abs() < 1e-12, "{line:?}");
         assert!((line.stroke_share - 0.3).abs() < 1e-12, "{line:?}");
-        assert!((line.load_line_share - force - 0.3).abs() < 1e-12, "{line:?}");
+        assert!((line.load_line_share - 2.0 * force - 0.3).abs() < 1e-12, "{line:?}");
     }
 }

@@ -13,7 +13,7 @@ use crate::error::StudyError;
 use crate::flaps::PlantError;
 use crate::loads::{is_still, loads_cost};
 use crate::plant::{HUB_OUTPUTS, RotorPlant, output_weights, watt_per_deg2};
-use crate::rotor::TrimmedRotor;
+use crate::rotor::{HARMONICS, TrimmedRotor};
 use crate::series::{added, coefficients, scaled};
 use hhc_control::{
     ControlError, ControlLimits, FeedbackLaw, FrontPoint, Plant, RunError, SecondCost, TMatrix,
@@ -30,20 +30,20 @@ pub enum FrontAgainst {
     #[default]
     Power,
     /// Torsion at the root of the blade, which the pitch link holds.
-    PitchLink,
+    RootTorsion,
     /// Flap bending moment at the root of the blade.
     RootFlap,
 }
 
 impl FrontAgainst {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::Power, Self::PitchLink, Self::RootFlap];
+    pub const ALL: [Self; 3] = [Self::Power, Self::RootTorsion, Self::RootFlap];
 
     /// In words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Power => "actuation power",
-            Self::PitchLink => "torsion at the root",
+            Self::RootTorsion => "torsion at the root",
             Self::RootFlap => "flap moment at the root",
         }
     }
@@ -52,7 +52,7 @@ impl FrontAgainst {
     fn moment(self) -> Option<usize> {
         match self {
             Self::Power => None,
-            Self::PitchLink => Some(TORSION),
+            Self::RootTorsion => Some(TORSION),
             Self::RootFlap => Some(FLAP),
         }
     }
@@ -157,6 +157,16 @@ impl ControlSet<'_> {
             Some(_) => ControlActuator::Hysteretic,
             None => ControlActuator::Ideal,
         };
+        if self.harmonics.iter().any(|n| *n > HARMONICS) {
+            let failure = format!("the rotor is linearised for flaps up to {HARMONICS} per rev");
+            let line = |against| FrontLine {
+                harmonics: self.harmonics.to_vec(),
+                against,
+                failure: Some(failure.clone()),
+                ..FrontLine::default()
+            };
+            return Ok(FrontAgainst::ALL.into_iter().map(line).collect());
+        }
         let failed = |error| self.failed(actuator, error);
         let linear = self.linear(self.plant(actuator)?).map_err(failed)?;
         FrontAgainst::ALL
@@ -304,7 +314,7 @@ impl Linear<'_> {
             cost_ratio: point.loads_cost / before,
             second: match against {
                 FrontAgainst::Power => point.second_cost,
-                FrontAgainst::PitchLink | FrontAgainst::RootFlap => {
+                FrontAgainst::RootTorsion | FrontAgainst::RootFlap => {
                     (0.5 * point.second_cost).sqrt()
                 }
             },

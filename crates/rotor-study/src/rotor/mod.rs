@@ -13,6 +13,7 @@ mod root_pitch;
 mod trimmed;
 
 pub use authority::FlapAuthority;
+pub(crate) use authority::HARMONICS;
 pub use continuation::continued_trim;
 pub use disk::DiskLoads;
 pub use inflow::{SettledTrim, WakeStatus, settled_trim, wake_status, wake_warnings};
