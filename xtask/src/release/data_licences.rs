@@ -120,8 +120,9 @@ pub fn page(stated: &[Stated]) -> String {
          Every folder of `fixtures` with the origin of its data and the licence under which they are passed on. Code, synthetic \
          data and\nwhat was computed for this project are under MIT or Apache 2.0, at your choice. The packages and the command \
          hold `airfoils`, `cases` and\n`bench/apa500l_synthetic` alone; all else lies in the repository for tests.\n\n\
-         Where no licence was seen, facts are kept and no file of the source: harmonics and short tables. Ask the owners before \
-         you pass\nthem on.\n\n| folder | origin | licence |\n|---|---|---|\n{}",
+         The cases of HART II and HeliNOVI hold flight states, hub moments and a few means that were measured.\n\n\
+         Where no licence was seen, facts are kept, not files as they stood: harmonics, and short tables, some of them whole. Ask the \
+         owners\nbefore you pass them on.\n\n| folder | origin | licence |\n|---|---|---|\n{}",
         rows.concat()
     )
 }
