@@ -187,11 +187,7 @@ fn result_of(case: &Case, trimmed: &TrimmedRotor, found: &SteadyInTime) -> WakeI
         let squares = |part: &Interval| part.mean * part.mean - by_chance(part);
         parts.iter().map(squares).sum::<f64>().max(0.0).sqrt()
     });
-    let residual = found
-        .residuals
-        .iter()
-        .map(|r| r.mean.abs())
-        .fold(None, |most: Option<f64>, r| Some(most.map_or(r, |most| most.max(r))));
+    let residual = found.residuals.iter().map(|r| r.mean.abs()).reduce(f64::max);
     let periodic_settled = trimmed.wake().is_some_and(|wake| wake.outcome == WakeOutcome::Settled);
     WakeInTimeResult {
         advance_ratio: case.advance_ratio,
@@ -258,7 +254,7 @@ fn warnings(
     }
     if !periodic_settled {
         out.push(
-            "no periodic wake was found: means settle with the steps of the wake long before amplitudes do; compare `azimuths` of 36 and 72"
+            "no periodic wake was found, and intervals are those of one grid: compare `azimuths` of 36 and 72 before you use an amplitude"
                 .to_owned(),
         );
     }

@@ -83,19 +83,38 @@ fn worst(pairs: &[([f64; HUB_OUTPUTS], [f64; HUB_OUTPUTS])], j0: f64) -> [f64; 2
     })
 }
 
-/// `J` in time, and the loads behind it, are those of the nonlinear rotor in trim at that speed to 2 % of `J0`. Without a
-/// harmonic of the flaps, or with the nearest knot alone, they are not.
-#[test]
-fn loads_in_time_are_those_of_the_nonlinear_rotor() {
+/// A closed loop at one of the speeds, and the rotor in trim there.
+struct Flown {
+    advance_ratio: f64,
+    motions: Vec<Vec<HarmonicSeries>>,
+    rotor: TrimmedRotor,
+    blades: usize,
+    j0: f64,
+}
+
+/// The rotor of a flight, and what was flown with it.
+fn all_flown() -> (RotorPath, Vec<Flown>) {
     let case = Case::default();
     let knots: Vec<f64> = (0..=PARTS).map(|k| 0.15 + PART * f64::from(k)).collect();
     let path = RotorPath::new(&case, &knots).unwrap();
     let model = actuator();
-    for advance_ratio in CONDITIONS {
+    let blades = case.rotor.blades;
+    let at = |advance_ratio: f64| {
         let motions = flown(&path, &model, advance_ratio);
         let rotor = TrimmedRotor::new(&Case { advance_ratio, ..case.clone() }, None).unwrap();
-        let nb = case.rotor.blades;
-        let j0 = size(&rotor.trim().rotor.hub.harmonic(nb));
+        let j0 = size(&rotor.trim().rotor.hub.harmonic(blades));
+        Flown { advance_ratio, motions, rotor, blades, j0 }
+    };
+    let each = CONDITIONS.map(at).into();
+    (path, each)
+}
+
+/// `J` in time, and the loads behind it, are those of the nonlinear rotor in trim at that speed to 2 % of `J0`. Without a
+/// harmonic of the flaps, or with the nearest knot alone, they are not.
+#[test]
+fn loads_in_time_are_those_of_the_nonlinear_rotor() {
+    let (path, each) = all_flown();
+    for Flown { advance_ratio, motions, rotor, blades: nb, j0 } in each {
         let truth: Vec<[f64; HUB_OUTPUTS]> = motions
             .iter()
             .map(|own| {
@@ -174,15 +193,8 @@ fn marched(
 /// harmonics, loads are farther off.
 #[test]
 fn loads_in_time_are_those_of_the_rotor_marched_in_time() {
-    let case = Case::default();
-    let knots: Vec<f64> = (0..=PARTS).map(|k| 0.15 + PART * f64::from(k)).collect();
-    let path = RotorPath::new(&case, &knots).unwrap();
-    let model = actuator();
-    for advance_ratio in CONDITIONS {
-        let motions = flown(&path, &model, advance_ratio);
-        let rotor = TrimmedRotor::new(&Case { advance_ratio, ..case.clone() }, None).unwrap();
-        let nb = case.rotor.blades;
-        let j0 = size(&rotor.trim().rotor.hub.harmonic(nb));
+    let (path, each) = all_flown();
+    for Flown { advance_ratio, motions, rotor, blades: nb, j0 } in each {
         let truth = marched(&rotor, nb, &motions);
         let state = FlightState { advance_ratio, thrust_share: 0.0 };
         let cycle: usize = CYCLE_REV.iter().sum();

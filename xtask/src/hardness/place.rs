@@ -6,18 +6,8 @@ use std::process::{Child, Command, Output, Stdio};
 
 use crate::{XtaskError, files};
 
-/// A case that is quick to run.
-pub(super) const CASE: &str = "(
-    title: \"quick\",
-    advance_ratio: 0.2,
-    structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
-    aerodynamics: (model: QuasiSteady, compressibility: None),
-    inflow: (model: Uniform),
-    trim: WindTunnel(ct_sigma: 0.07, shaft_tilt_deg: 3.0),
-    actuator: (model: Ideal),
-    control: (harmonics: [[3]], actuators: [Ideal]),
-)
-";
+/// A case that is quick to run: that of the tests of the command.
+pub(super) const CASE: &str = include_str!("../../../crates/sim-driver/tests/command/quick.ron");
 
 /// How files that are being written are named, so that none is taken for a result.
 const UNFINISHED: &str = ".hhc-";

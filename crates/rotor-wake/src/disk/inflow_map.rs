@@ -6,6 +6,18 @@ use crate::WakeRotor;
 use rotor_base::{harmonic_waves, uniform_azimuths_rad};
 use std::sync::OnceLock;
 
+/// Mean by area of values at panels of given stations and widths, again and again around the disk.
+pub(crate) fn mean_over_disk(stations: &[f64], widths: &[f64], values: &[f64]) -> f64 {
+    let (mut sum, mut area) = (0.0, 0.0);
+    for (k, value) in values.iter().enumerate() {
+        let s = k % stations.len();
+        let weight = stations[s] * widths[s];
+        sum += weight * value;
+        area += weight;
+    }
+    sum / area
+}
+
 /// Induced velocity at the middles of the panels and at uniform azimuths, tip speed: inflow, down positive,
 /// and where it is known the velocity in the plane of the disk across the blade, from the leading to the
 /// trailing edge positive.
@@ -191,13 +203,6 @@ impl InflowMap {
 
     /// Mean over the annulus of the lifting span, by area.
     pub fn mean(&self) -> f64 {
-        let (mut sum, mut area) = (0.0, 0.0);
-        for (k, value) in self.down.values.iter().enumerate() {
-            let s = k % self.stations.len();
-            let weight = self.stations[s] * self.widths[s];
-            sum += weight * value;
-            area += weight;
-        }
-        sum / area
+        mean_over_disk(&self.stations, &self.widths, &self.down.values)
     }
 }

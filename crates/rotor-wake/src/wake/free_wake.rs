@@ -205,6 +205,11 @@ impl FreeWake {
         self.settings.near_wake_motion == NearWakeMotion::Free
     }
 
+    /// How many of the filaments that move freely are of the near wake: the first ones.
+    pub(crate) fn free_of_near(&self) -> usize {
+        if self.near_is_free() { self.near.len() } else { 0 }
+    }
+
     /// The filaments that move freely.
     pub(crate) fn free(&self) -> impl Iterator<Item = &Filament> {
         let near = if self.near_is_free() { &self.near[..] } else { &[] };

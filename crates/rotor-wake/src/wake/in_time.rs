@@ -8,6 +8,7 @@ use super::settings::{NearWakeMotion, ReleasePoint};
 use super::sources::{BladeView, Past, RollUp, SourceContext, Sources};
 use super::{FreeWake, WakeSymmetry};
 use crate::disk::blades::edge_between;
+use crate::disk::inflow_map::mean_over_disk;
 use crate::error::ensure;
 use crate::kernel::{BLOCK, TakeVelocity, for_each_velocity};
 use crate::vector::{Vec3, add, is_finite, scale, sub};
@@ -120,11 +121,7 @@ struct Split<'a> {
 impl TakeVelocity for Split<'_> {
     #[inline(always)]
     fn take(&mut self, segment: usize, [x, y, z]: [&[f64; BLOCK]; 3]) {
-        let TargetBlock { sines, cosines, .. } = self.block;
-        let mut along = [0.0; BLOCK];
-        for k in 0..BLOCK {
-            along[k] = x[k] * sines[k] - y[k] * cosines[k];
-        }
+        let along = self.block.along(x, y);
         for (at, factor) in self.sources.terms(segment).iter() {
             let (row, panel) = (at / self.panels, at % self.panels);
             let blade = row / self.rows;
@@ -203,7 +200,7 @@ impl WakeInTime {
 
     /// Rolled-up vortices of a blade from root to tip: nodes in hub axes by age, unit `R`.
     pub fn vortices(&self, blade: usize) -> &[Vec<Vec3>] {
-        &self.blades[blade].shape[self.near_count()..]
+        &self.blades[blade].shape[self.wake.free_of_near()..]
     }
 
     /// Carries the wake over one azimuth step to where the blades are; they carry what they carried there a revolution ago, but
@@ -265,6 +262,12 @@ impl WakeInTime {
             return Err(WakeError::WakeLost { displacement: f64::NAN });
         }
         Ok(())
+    }
+
+    /// Mean by area of values at the panels of all blades, blade by blade.
+    pub fn mean_over_blades(&self, values: &DVector<f64>) -> f64 {
+        let rotor = &self.wake.rotor;
+        mean_over_disk(&rotor.stations(), &rotor.widths(), values.as_slice())
     }
 
     /// What the blades feel where they are now.
@@ -338,7 +341,7 @@ impl WakeInTime {
     }
 
     fn context(&self) -> SourceContext<'_> {
-        let far = self.blades.iter().flat_map(|b| &b.shape[self.near_count()..]);
+        let far = self.blades.iter().flat_map(|b| &b.shape[self.wake.free_of_near()..]);
         let turn = last_turn(far, self.wake.settings.azimuths);
         self.wake.context(&self.circulation, turn)
     }
@@ -362,13 +365,8 @@ impl WakeInTime {
         blocks
     }
 
-    /// Filaments of a shape that are of the near wake.
-    fn near_count(&self) -> usize {
-        if self.wake.near_is_free() { self.wake.near.len() } else { 0 }
-    }
-
     fn view<'a>(&'a self, blade: &'a BladeWake) -> BladeView<'a> {
-        let (free_near, far) = blade.shape.split_at(self.near_count());
+        let (free_near, far) = blade.shape.split_at(self.wake.free_of_near());
         let near = if self.wake.near_is_free() { free_near } else { &blade.near };
         let BladePlace { line, edge } = &blade.places[0];
         BladeView {
@@ -384,7 +382,7 @@ impl WakeInTime {
     fn carry(&mut self) {
         let wake = &self.wake;
         let (step, stream, near) =
-            (wake.settings.step_rad(), wake.free_stream(), self.near_count());
+            (wake.settings.step_rad(), wake.free_stream(), self.wake.free_of_near());
         let roll_up = RollUp::new(&wake.settings.far, &wake.rotor, &self.circulation);
         let point = wake.settings.release;
         for blade in &mut self.blades {

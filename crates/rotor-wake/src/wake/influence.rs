@@ -80,6 +80,16 @@ impl TargetBlock {
         }
         (self.sines[lane], self.cosines[lane]) = azimuth_rad.sin_cos();
     }
+
+    /// Velocity across each blade in the plane of the disk, from the leading to the trailing edge.
+    #[inline(always)]
+    pub(super) fn along(&self, x: &[f64; BLOCK], y: &[f64; BLOCK]) -> [f64; BLOCK] {
+        let mut along = [0.0; BLOCK];
+        for k in 0..BLOCK {
+            along[k] = x[k] * self.sines[k] - y[k] * self.cosines[k];
+        }
+        along
+    }
 }
 
 /// The rows of the map at the points of a block, column by column.
@@ -93,11 +103,7 @@ struct Rows<'a> {
 impl TakeVelocity for Rows<'_> {
     #[inline(always)]
     fn take(&mut self, segment: usize, [x, y, z]: [&[f64; BLOCK]; 3]) {
-        let TargetBlock { sines, cosines, .. } = self.block;
-        let mut along = [0.0; BLOCK];
-        for k in 0..BLOCK {
-            along[k] = x[k] * sines[k] - y[k] * cosines[k];
-        }
+        let along = self.block.along(x, y);
         for (at, factor) in self.sources.terms(segment).iter() {
             for (sum, z) in self.down[at].iter_mut().zip(z) {
                 *sum -= factor * z;

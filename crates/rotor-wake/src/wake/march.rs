@@ -288,7 +288,7 @@ impl WakeMarch {
     fn view<'a>(&'a self, state: &'a BladeState) -> BladeView<'a> {
         let wake = &self.wake;
         let shape = &state.levels[0];
-        let (free_near, far) = shape.split_at(self.near_count());
+        let (free_near, far) = shape.split_at(self.wake.free_of_near());
         let near = if wake.near_is_free() {
             free_near.iter().map(Vec::as_slice).collect()
         } else {
@@ -303,14 +303,9 @@ impl WakeMarch {
         }
     }
 
-    /// Filaments of a shape that are of the near wake.
-    fn near_count(&self) -> usize {
-        if self.wake.near_is_free() { self.wake.near.len() } else { 0 }
-    }
-
     /// Mean displacement over the last free turn, over all blades.
     fn turn(&self) -> Vec3 {
-        let far = self.blades.iter().flat_map(|b| &b.levels[0][self.near_count()..]);
+        let far = self.blades.iter().flat_map(|b| &b.levels[0][self.wake.free_of_near()..]);
         last_turn(far, self.wake.settings.azimuths)
     }
 

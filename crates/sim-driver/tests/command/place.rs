@@ -116,17 +116,7 @@ impl Ran {
 }
 
 /// A case that is quick to run: few modes, coarse in time, prescribed controls, no control.
-pub(crate) const QUICK_CASE: &str = "(
-    title: \"quick\",
-    advance_ratio: 0.2,
-    structure: (elements: 4, modes: (flap: 2, lag: 1, torsion: 1)),
-    aerodynamics: (model: QuasiSteady, compressibility: None),
-    inflow: (model: Uniform),
-    trim: WindTunnel(ct_sigma: 0.07, shaft_tilt_deg: 3.0),
-    actuator: (model: Ideal),
-    control: (harmonics: [[3]], actuators: [Ideal]),
-)
-";
+pub(crate) const QUICK_CASE: &str = include_str!("quick.ron");
 
 /// A small free wake: steps of 30 deg, two turns, eight panels.
 pub(crate) const SMALL_WAKE: &str =

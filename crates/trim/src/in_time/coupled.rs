@@ -61,8 +61,6 @@ pub struct CoupledInTime {
     slopes: Vec<Option<DMatrix<f64>>>,
     /// Steps of the wake so far.
     steps: usize,
-    /// Iterations so far.
-    iterations: usize,
 }
 
 /// Angle, rate and acceleration (rad by azimuth) of every flap of a blade, at its azimuth (rad) and after so many radians in all.
@@ -105,28 +103,12 @@ impl CoupledInTime {
         let inflow = (0..REMEMBERED).map(before).collect();
         let slopes = vec![None; azimuths];
         let wake = WakeInTime::new(wake, &begun.moving)?;
-        Ok(Self {
-            rotor,
-            panels,
-            wake,
-            blades,
-            settings,
-            blade_steps,
-            inflow,
-            slopes,
-            steps: 0,
-            iterations: 0,
-        })
+        Ok(Self { rotor, panels, wake, blades, settings, blade_steps, inflow, slopes, steps: 0 })
     }
 
     /// The wake.
     pub fn wake(&self) -> &WakeInTime {
         &self.wake
-    }
-
-    /// The blades.
-    pub fn blades(&self) -> &BladesInTime {
-        &self.blades
     }
 
     /// Number of blades.
@@ -144,22 +126,9 @@ impl CoupledInTime {
         self.rotor.steps_per_revolution()
     }
 
-    /// Iterations per step so far.
-    pub fn mean_iterations(&self) -> f64 {
-        self.iterations as f64 / self.steps.max(1) as f64
-    }
-
     /// Mean over all panels of all blades by area of the inflow they feel now, tip speed.
     pub fn mean_inflow(&self) -> f64 {
-        let panels = self.wake.began_with().rotor();
-        let (r, widths) = (panels.stations(), panels.widths());
-        let (mut sum, mut area) = (0.0, 0.0);
-        for (k, value) in self.inflow[0][0].iter().enumerate() {
-            let s = k % r.len();
-            sum += r[s] * widths[s] * value;
-            area += r[s] * widths[s];
-        }
-        sum / area
+        self.wake.mean_over_blades(&self.inflow[0][0])
     }
 
     /// One azimuth step of the wake under controls and flap motions; returns the instants of the blades on the way.
@@ -201,7 +170,6 @@ impl CoupledInTime {
                 self.inflow.pop_back();
                 self.inflow.push_front(wanted);
                 self.steps += 1;
-                self.iterations += iteration;
                 return Ok(instants);
             }
             let slopes = self.slopes_at(&way, &inflow, condition, flaps)?;
