@@ -93,6 +93,9 @@ enum Chore {
         /// Only a part, which is shown, not written
         #[arg(long, value_enum)]
         only: Option<bench::Part>,
+        /// Root of a checkout of an earlier commit: its commands are built and timed beside
+        #[arg(long, value_name = "DIR")]
+        before: Option<PathBuf>,
     },
     /// Compare dynamic stall with the measured loops of a folder, and write docs/src/dynamic-stall.md
     DynamicStall(Stall),
@@ -495,7 +498,7 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
             hidden(root, kind, &suite.options(selection))
         }
         Chore::EverydayErrors(options) => everyday(root, options),
-        Chore::Bench { quick, only } => speed(root, quick, only),
+        Chore::Bench { quick, only, before } => speed(root, quick, only, before),
         Chore::DynamicStall(options) => stall(root, &options),
         Chore::CaseStudies(Studies { name, quick, check }) => {
             studies(root, &case_studies::Options { name, quick, check })
@@ -579,10 +582,19 @@ fn everyday(root: &Path, options: Everyday) -> Result<ExitCode, XtaskError> {
     Ok(ExitCode::from(report.exit_code()))
 }
 
-fn speed(root: &Path, quick: bool, only: Option<bench::Part>) -> Result<ExitCode, XtaskError> {
+fn speed(
+    root: &Path,
+    quick: bool,
+    only: Option<bench::Part>,
+    before: Option<PathBuf>,
+) -> Result<ExitCode, XtaskError> {
     let patience = if quick { Patience::Quick } else { Patience::Usual };
-    let options = bench::Options { patience, only };
-    let page = bench::run(root, options, |line| say(&mut std::io::stderr(), line))?;
+    // its programs run in folders of their own
+    let absolute =
+        |path: PathBuf| path.canonicalize().map_err(|source| XtaskError::Read { path, source });
+    let before = before.map(absolute).transpose()?;
+    let options = bench::Options { patience, only, before };
+    let page = bench::run(root, &options, |line| say(&mut std::io::stderr(), line))?;
     let text = if options.is_whole() {
         files::write_atomically(&root.join(bench::PAGE), &page)?;
         format!("written: {}\n", bench::PAGE)

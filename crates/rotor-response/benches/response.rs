@@ -133,14 +133,23 @@ fn residual(criterion: &mut Criterion) {
     }
     println!("residual: {:.2} ms, {:.2} of the budget", 1e3 * best, best / RESIDUAL_BUDGET_S);
     criterion.bench_function("residual", |b| one_core.install(|| b.iter(run)));
-    let mut group = criterion.benchmark_group("residual over stations");
+    growth(criterion, &one_core, "residual over stations");
+    if let Ok(two_cores) = rayon::ThreadPoolBuilder::new().num_threads(2).build() {
+        growth(criterion, &two_cores, "residual over stations, 2 threads");
+    }
+}
+
+/// How a residual grows with the stations.
+fn growth(criterion: &mut Criterion, cores: &rayon::ThreadPool, name: &str) {
+    let moved = condition(0.05);
+    let mut group = criterion.benchmark_group(name);
     for span_points_per_piece in [2, 4, 6, 8] {
         let finer = Discretisation { span_points_per_piece, ..Discretisation::default() };
         let Ok((solver, rest)) = at_rest(finer) else { return };
         let stations = solver.rotor().blade().grid().len();
         let run = || black_box(solver.periodicity(&moved, &rest));
         group.bench_function(BenchmarkId::from_parameter(stations), |b| {
-            one_core.install(|| b.iter(run));
+            cores.install(|| b.iter(run));
         });
     }
     group.finish();

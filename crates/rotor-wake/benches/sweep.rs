@@ -36,13 +36,19 @@ fn wake_of(settings: FreeWakeSettings) -> (FreeWake, CirculationMap) {
     (FreeWake::undistorted(rotor, settings, flight, 0.008, lines).unwrap(), circulation)
 }
 
-/// How a sweep on one thread grows with the steps of azimuth and with the free turns.
+/// How a sweep on one thread and on two grows with the steps of azimuth and with the free turns.
 fn growth(criterion: &mut Criterion) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for (threads, on) in [(1, ""), (2, ", 2 threads")] {
+        growth_on(criterion, threads, on);
+    }
+}
+
+fn growth_on(criterion: &mut Criterion, threads: usize, on: &str) {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let azimuths = [12, 24, 36, 48].map(|n| (n, usual().with_azimuths(n)));
     let turns = [2, 4, 6, 8].map(|turns| (turns, FreeWakeSettings { turns, ..usual() }));
     for (name, wakes) in [("sweep over azimuths", azimuths), ("sweep over turns", turns)] {
-        let mut group = criterion.benchmark_group(name);
+        let mut group = criterion.benchmark_group(format!("{name}{on}"));
         for (size, settings) in wakes {
             let (wake, circulation) = wake_of(settings);
             group.bench_function(BenchmarkId::from_parameter(size), |b| {

@@ -60,13 +60,19 @@ impl Printable for RootPitchResult {
     }
 }
 
-/// The wake of a case with plausibility warnings about the case, and its files.
+/// The wake of a case with plausibility warnings about the case, and its files, where they are wanted.
 ///
 /// # Errors
 /// The errors of the rotor, of the trim and of the wake.
-pub fn wake_files(loaded: &LoadedCase) -> Result<(WakeResult, WakeFiles), SimError> {
+pub fn wake_and_files(
+    loaded: &LoadedCase,
+    wanted: bool,
+) -> Result<(WakeResult, WakeFiles), SimError> {
     let doubts = || loaded.in_words(loaded.case.value_warnings());
     let found = wake_of_case(&loaded.case).and_then(|found| {
+        if !wanted {
+            return Ok((found.result, WakeFiles::new()));
+        }
         let files = study_text::wake_files(&found, &loaded.case).map_err(|source| {
             let (field, source) = ("inflow.model".to_owned(), source.into());
             StudyError::Response { field, source }

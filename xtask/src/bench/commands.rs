@@ -115,12 +115,27 @@ pub struct Timed {
     pub one: Option<Spent>,
     /// On two threads.
     pub two: Spent,
+    /// What the program of an earlier tree took on two threads, in the same run.
+    pub earlier: Option<Spent>,
 }
 
 impl Timed {
     /// Seconds over which the bar is held.
     pub fn held_s(&self) -> f64 {
-        if self.timing.bar_is_cpu { self.two.cpu_s } else { self.two.wall_s }
+        self.held_of(self.two)
+    }
+
+    fn held_of(&self, spent: Spent) -> f64 {
+        if self.timing.bar_is_cpu { spent.cpu_s } else { spent.wall_s }
+    }
+
+    /// What it took before: measured in the same run where there is an earlier program, or as it was noted.
+    pub fn before(&self) -> Option<Before> {
+        let noted = self.timing.before?;
+        Some(self.earlier.map_or(noted, |earlier| Before {
+            range_s: [self.held_of(earlier); 2],
+            otherwise: noted.otherwise,
+        }))
     }
 
     /// Processor seconds: those of one thread, where no thread waits for another.
@@ -149,7 +164,8 @@ impl Program<'_> {
             self.run(before, 2)?;
         }
         let one = if timing.slow { None } else { Some(self.least(timing.arguments, 1)?) };
-        Ok(Timed { timing: *timing, one, two: self.least(timing.arguments, 2)? })
+        let two = self.least(timing.arguments, 2)?;
+        Ok(Timed { timing: *timing, one, two, earlier: None })
     }
 
     /// The least times of some runs, each from nothing.

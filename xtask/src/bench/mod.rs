@@ -10,7 +10,7 @@ pub mod page;
 pub mod paths;
 pub mod samples;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::diagnosis::{self, write_folder};
 use crate::{XtaskError, files};
@@ -38,30 +38,35 @@ pub enum Part {
 }
 
 /// What to measure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Options {
     /// How long.
     pub patience: Patience,
     /// Only one part.
     pub only: Option<Part>,
+    /// Root of a tree of an earlier commit, whose commands are timed beside.
+    pub before: Option<PathBuf>,
 }
 
 impl Options {
-    fn asks(self, part: Part) -> bool {
+    fn asks(&self, part: Part) -> bool {
         self.only.is_none_or(|only| only == part)
     }
 
     /// Whether the page of the book is made of this run.
-    pub fn is_whole(self) -> bool {
+    pub fn is_whole(&self) -> bool {
         self.patience == Patience::Usual && self.only.is_none()
     }
 }
 
 /// Groups of benches over a size: target, id, and what the page calls it.
-const GROWING_BENCHES: [(&str, &str, &str); 4] = [
-    ("response", "residual over stations", "residual of a revolution over stations"),
-    ("sweep", "sweep over azimuths", "sweep of the free wake over azimuths"),
-    ("sweep", "sweep over turns", "sweep of the free wake over turns"),
+const GROWING_BENCHES: [(&str, &str, &str); 7] = [
+    ("response", "residual over stations", "residual of a revolution over stations, one core"),
+    ("response", "residual over stations, 2 threads", "the same, two cores"),
+    ("sweep", "sweep over azimuths", "sweep of the free wake over azimuths, one core"),
+    ("sweep", "sweep over azimuths, 2 threads", "the same, two cores"),
+    ("sweep", "sweep over turns", "sweep of the free wake over turns, one core"),
+    ("sweep", "sweep over turns, 2 threads", "the same, two cores"),
     ("sample", "sample over levels", "dynamic Preisach model, a sample over levels"),
 ];
 
@@ -76,7 +81,7 @@ const RATIOS: [(f64, &str); 3] = [(1.0, "0.30"), (2.0, "0.25,0.30"), (4.0, "0.20
 ///
 /// # Errors
 /// [`XtaskError`] where a bench or a command cannot be built, run or read.
-pub fn run(root: &Path, options: Options, progress: impl Fn(&str)) -> Result<String, XtaskError> {
+pub fn run(root: &Path, options: &Options, progress: impl Fn(&str)) -> Result<String, XtaskError> {
     let machine = Machine::here(root);
     let benches = benches(options);
     let targets: Vec<&str> = benches.iter().map(|(target, _)| *target).collect();
@@ -94,14 +99,22 @@ pub fn run(root: &Path, options: Options, progress: impl Fn(&str)) -> Result<Str
     files::remove_folder(&folder)?;
     let most_runs = if options.patience == Patience::Quick { 1 } else { 3 };
     let program = Program { root, path, folder, most_runs };
-    let commands = timed(&program, options, &progress)?;
+    let earlier = options.before.as_deref().map(|before| earlier(before, &program)).transpose()?;
+    let commands = timed(&program, earlier.as_ref(), options, &progress)?;
+    let before = options.before.as_deref().map(diagnosis::commit);
     let growth = growth(&program, options, &samples, &progress)?;
     let paths = if options.asks(Part::Paths) { paths::measured(&samples)? } else { Vec::new() };
-    page::render(&Figures { machine, samples, paths, growth, commands })
+    page::render(&Figures { machine, before, samples, paths, growth, commands })
+}
+
+/// The program of an earlier tree, built there.
+fn earlier<'a>(root: &'a Path, program: &Program<'_>) -> Result<Program<'a>, XtaskError> {
+    let path = diagnosis::build(root)?;
+    Ok(Program { root, path, folder: program.folder.join("before"), most_runs: 1 })
 }
 
 /// The benches asked for, by target.
-fn benches(options: Options) -> Vec<(&'static str, Vec<&'static str>)> {
+fn benches(options: &Options) -> Vec<(&'static str, Vec<&'static str>)> {
     let mut all = if options.asks(Part::Paths) { paths::benches() } else { Vec::new() };
     for (target, id, _) in GROWING_BENCHES.iter().filter(|_| options.asks(Part::Growth)) {
         paths::add(&mut all, target, id);
@@ -109,16 +122,20 @@ fn benches(options: Options) -> Vec<(&'static str, Vec<&'static str>)> {
     all
 }
 
-/// The commands asked for.
+/// The commands asked for, those of an earlier program beside.
 fn timed(
     program: &Program<'_>,
-    options: Options,
+    earlier: Option<&Program<'_>>,
+    options: &Options,
     progress: &impl Fn(&str),
 ) -> Result<Vec<Timed>, XtaskError> {
     let quick = options.patience == Patience::Quick;
     let asked = TIMINGS.iter().filter(|t| options.asks(Part::Commands) && !(quick && t.slow));
     let one = |timing| {
-        let timed = program.timed(timing)?;
+        let mut timed = program.timed(timing)?;
+        if let Some(earlier) = earlier.filter(|_| timing.before.is_some()) {
+            timed.earlier = Some(earlier.least(timing.arguments, 2)?);
+        }
         progress(&format!("hhc {}: {:.1} s\n", timing.arguments, timed.two.wall_s));
         Ok(timed)
     };
@@ -128,7 +145,7 @@ fn timed(
 /// The series asked for: of the benches, and of commands.
 fn growth(
     program: &Program<'_>,
-    options: Options,
+    options: &Options,
     samples: &Samples,
     progress: &impl Fn(&str),
 ) -> Result<Vec<Series>, XtaskError> {
@@ -183,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_part_asks_for_its_own_benches_and_a_whole_run_for_all() {
-        let of = |only| benches(Options { patience: Patience::Quick, only });
+        let of = |only| benches(&Options { patience: Patience::Quick, only, before: None });
         assert!(of(Some(Part::Commands)).is_empty());
         let growing = of(Some(Part::Growth));
         assert_eq!(

@@ -15,6 +15,8 @@ use crate::validate::figure;
 pub struct Figures {
     /// What it was measured on.
     pub machine: Machine,
+    /// The earlier commit whose commands were timed beside, if there was one.
+    pub before: Option<String>,
     /// The benches.
     pub samples: Samples,
     /// The paths.
@@ -32,7 +34,7 @@ const INTRODUCTION: &str = "\
 
 Every figure but those of before is of one run of `cargo xtask bench`, in release builds. A time is the least of several: other
 work on the machine interrupts some of them, not all. A bar is what was asked for, of trims for two cores; what is over it is
-bold. Times of before were noted on an older processor; beside them, how many times those of now they are.
+bold. Beside times of before stands how many times those of now they are.
 ";
 
 const LIMITS: &str = "
@@ -44,14 +46,14 @@ What one core can do at most, measured with independent operations in its vector
 const PATHS: &str = "
 Divisions and roots keep the divider busy, sums and products the multiply-add units. The longer of the two times is the limit of
 a path. It holds for full vectors in which nothing waits. Operations are counted in the formulas that the
-program uses. What is made of many residuals of a revolution is given in these.
+program uses. What is made of many residuals of a revolution is given in these. Times of before were noted on an older
+processor (Zen 3).
 ";
 
 const COMMANDS: &str = "
 ## Whole commands
 
-Bars are for two cores by the clock, but where processor seconds are said. What a command took before the work on speed was
-noted on an older processor; the last section has it for a newer one.
+Bars are for two cores by the clock, but where processor seconds are said.
 ";
 
 const GROWTH: &str = "
@@ -76,7 +78,7 @@ const BUSY: &str = "
 /// # Errors
 /// [`XtaskError::Speed`] for a bench that was not run, and for a series without a power.
 pub fn render(figures: &Figures) -> Result<String, XtaskError> {
-    let Figures { machine, samples, paths, growth, commands } = figures;
+    let Figures { machine, before, samples, paths, growth, commands } = figures;
     let mut page = INTRODUCTION.to_owned();
     let Machine { processor, cores, load, compiler, day, commit } = machine;
     let _ = writeln!(
@@ -95,6 +97,12 @@ pub fn render(figures: &Figures) -> Result<String, XtaskError> {
     }
     if !commands.is_empty() {
         page += COMMANDS;
+        page += &before.as_ref().map_or_else(
+            || "Times of before were noted on an older processor (Zen 3).\n".to_owned(),
+            |commit| {
+                format!("Times of before are those of commit {commit}, on the same machine in the same run.\n")
+            },
+        );
         page += &command_table(commands, element_s(samples, RESIDUAL).ok());
     }
     if !growth.is_empty() {
@@ -181,13 +189,13 @@ fn kernel_rates(paths: &[MeasuredPath]) -> Result<String, XtaskError> {
 
 fn command_table(commands: &[Timed], residual_s: Option<f64>) -> String {
     let rows = commands.iter().map(|timed| {
-        let Timing { name, arguments, bar_s, before, .. } = timed.timing;
+        let Timing { name, arguments, bar_s, .. } = timed.timing;
         let cell = |value: Option<f64>| value.map_or("–".to_owned(), figure);
         let one = |part: fn(Spent) -> f64| cell(timed.one.map(part));
         [
             format!("{name}: `{}`", format!("hhc {arguments}").trim_end()),
             cell(bar_s) + if timed.timing.bar_is_cpu { " of processors" } else { "" },
-            before.map_or("–".to_owned(), |before| before.over(timed.held_s(), figure)),
+            timed.before().map_or("–".to_owned(), |b| b.over(timed.held_s(), figure)),
             figure(timed.cpu_s()),
             bar_s.map_or("–".to_owned(), |bar_s| met(timed.held_s() / bar_s)),
             one(|spent| spent.wall_s),
@@ -305,11 +313,12 @@ mod tests {
         };
         let timed = TIMINGS.iter().zip(1..).map(|(timing, n)| {
             let two = Spent { wall_s: 2.0 * f64::from(n), cpu_s: 3.0 * f64::from(n) };
-            Timed { timing: *timing, one: (!timing.slow).then_some(two), two }
+            Timed { timing: *timing, one: (!timing.slow).then_some(two), two, earlier: None }
         });
         let square = Series { name: text("squares"), points: vec![(2.0, 4e-3), (6.0, 36e-3)] };
         let paths = paths::measured(&samples).unwrap();
-        Figures { machine, samples, paths, growth: vec![square], commands: timed.collect() }
+        let growth = vec![square];
+        Figures { machine, before: None, samples, paths, growth, commands: timed.collect() }
     }
 
     /// The cells of the row that begins with a text.

@@ -8,7 +8,7 @@ use crate::SimError;
 use crate::case::LoadedCase;
 use crate::files::{refuse_unwritable, write_atomic};
 use crate::output::{Format, Printable, print};
-use crate::print::{modes_of_case, root_pitch_of_case, wake_files};
+use crate::print::{modes_of_case, root_pitch_of_case, wake_and_files};
 use crate::problem::Problems;
 use crate::progress::Progress;
 use crate::sweep::at_advance_ratio;
@@ -60,7 +60,8 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     if let Some(revolutions) = args.in_time {
         return in_time(&loaded, revolutions, args);
     }
-    let (result, files) = Progress::during("free wake and trim", || wake_files(&loaded))?;
+    let find = || wake_and_files(&loaded, args.out.is_some());
+    let (result, files) = Progress::during("free wake and trim", find)?;
     warn(&result.warnings, Format::Details);
     if let Some(folder) = &args.out {
         write_texts(folder, files)?;
