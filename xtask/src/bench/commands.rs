@@ -75,7 +75,7 @@ pub const BARE: Timing = Timing {
 };
 
 /// All commands that are timed.
-pub const TIMINGS: [Timing; 6] = [
+pub const TIMINGS: [Timing; 7] = [
     WAKE,
     CASE,
     Timing {
@@ -88,6 +88,13 @@ pub const TIMINGS: [Timing; 6] = [
         ..WAKE
     },
     BARE,
+    Timing {
+        name: "60 s of flight under three controllers, Drees's inflow",
+        arguments: "fly fixtures/cases/flight_ramp.ron",
+        bar_s: Some(20.0),
+        is_of_rotor: false,
+        ..WAKE
+    },
     Timing {
         name: "identification of the shipped bench set",
         arguments: "identify fixtures/bench/apa500l_synthetic -o a.ron",

@@ -114,7 +114,7 @@ const MODE: f64 = 8.0;
 pub const LINE_INDUCTION: (&str, &str) = ("sweep", "line induction");
 
 /// The paths, fastest first.
-pub const PATHS: [HotPath; 13] = [
+pub const PATHS: [HotPath; 15] = [
     path(
         "kernel, an evaluation, one core",
         ("kernel", KERNEL[0]),
@@ -144,6 +144,18 @@ pub const PATHS: [HotPath; 13] = [
         ("sample", "sample at 40 levels/dynamic"),
         Bar::Seconds(300e-9),
         Work::Counted(Operations { divisions: 1.0, roots: 1.0, multiply_adds: PLAYS }),
+    ),
+    path(
+        "cycle of the adaptive controller, one harmonic",
+        ("control_cycle", "controller cycle, one harmonic"),
+        Bar::Seconds(20e-6),
+        Work::Composed,
+    ),
+    path(
+        "cycle of the adaptive controller, 2 to 5/rev at once",
+        ("control_cycle", "controller cycle, 2 to 5 per rev"),
+        Bar::Seconds(20e-6),
+        Work::Composed,
     ),
     path(
         "residual of a revolution",
