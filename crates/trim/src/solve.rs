@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_response::{
-    Condition, Controls, ResponseError, ResponseTolerances, RotorSolution, RotorSolver,
+    Condition, Controls, ResponseError, ResponseTolerances, RotorSolution, RotorSolver, StateChange,
 };
 use rotor_wake::{FlightState, InflowModel, momentum_inflow};
 use std::sync::Arc;
@@ -44,8 +44,57 @@ pub struct TrimSolution {
     pub residual_history: Vec<f64>,
     /// Newton iterations.
     pub iterations: usize,
-    /// Last Jacobian of the trim residuals, kept for a nearby trim; none if none was needed.
-    pub jacobian: Option<DMatrix<f64>>,
+    /// How residuals and response answer the unknowns, kept for a nearby trim; none if it was not needed.
+    pub slope: Option<TrimSlope>,
+}
+
+/// How residuals and response answer the unknowns of a trim: three pitch controls, and in level flight shaft tilt, bank (rad)
+/// and tail thrust (`m0 Omega^2 R^2`).
+#[derive(Debug, Clone)]
+pub struct TrimSlope {
+    /// Jacobian of the residuals.
+    pub residuals: DMatrix<f64>,
+    /// Change of motion and inflow per unit of each unknown.
+    responses: Vec<StateChange>,
+}
+
+impl TrimSlope {
+    /// The same for a response in another kind of inflow.
+    fn in_inflow_of(self, response: &RotorSolution) -> Self {
+        let responses = self.responses.into_iter().map(|r| r.in_inflow_of(response)).collect();
+        Self { responses, ..self }
+    }
+
+    /// The response after a step, as the slope has it.
+    fn predicted(
+        &self,
+        from: &RotorSolution,
+        step: &DVector<f64>,
+    ) -> Result<RotorSolution, ResponseError> {
+        let Some((first, others)) = self.responses.split_first() else { return Ok(from.clone()) };
+        let mut change = first.clone();
+        change.scale(step[0]);
+        for (other, part) in others.iter().zip(step.iter().skip(1)) {
+            change.add(other, *part);
+        }
+        from.clone().moved_start(&change)
+    }
+
+    /// Broyden's update: the slope that has what a step has led to, and changes least.
+    fn update(
+        &mut self,
+        step: &DVector<f64>,
+        [from, to]: [&Iterate; 2],
+        predicted: &RotorSolution,
+    ) {
+        let share = step / step.norm_squared();
+        let expected = &from.1 + &self.residuals * step;
+        self.residuals += (&to.1 - expected) * share.transpose();
+        let missed = StateChange::between(predicted, &to.0);
+        for (response, share) in self.responses.iter_mut().zip(&share) {
+            response.add(&missed, *share);
+        }
+    }
 }
 
 /// Step of the finite-difference Jacobian, rad (and weights for the tail thrust).
@@ -56,6 +105,13 @@ const INFLOW_SHARE: f64 = 0.01;
 /// Weak residual of the orbit and mismatch of the inflow of a column of the Jacobian: a ten-thousandth of its step.
 const COLUMN_PERIODICITY: f64 = 1e-9;
 const COLUMN_INFLOW: f64 = 1e-8;
+/// What a step is expected to leave of the residuals of the trim.
+const LEFT_BY_A_STEP: f64 = 0.1;
+/// Mismatch of the inflow and weak residual of the orbit of a response on the way, over the residuals expected of it, and how
+/// often these are the tolerance of the trim at least: what is nearer is solved as exactly as the last response.
+const INFLOW_ON_THE_WAY: f64 = 3e-3;
+const PERIODICITY_ON_THE_WAY: f64 = 3e-4;
+const ON_THE_WAY: f64 = 10.0;
 /// Pitch angles beyond which the linear section model means nothing, rad.
 const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
@@ -128,12 +184,28 @@ impl Progress {
 /// A response, and the trim residuals that it leaves over the weight.
 type Iterate = (RotorSolution, DVector<f64>);
 
+/// Where a step begins, and how near the balance it is to come.
+struct Base<'a> {
+    x: &'a DVector<f64>,
+    current: &'a Iterate,
+    slope: &'a TrimSlope,
+    tolerance: f64,
+}
+
+/// A step that was gone, where it led, and the response that was predicted there.
+struct Gone {
+    step: DVector<f64>,
+    reached: Iterate,
+    predicted: RotorSolution,
+}
+
 const VARIABLES: [&str; 6] = ["theta0", "theta1c", "theta1s", "shaft tilt", "bank", "tail thrust"];
 
 /// Trims the rotor at one advance ratio with given flap motions (none: flaps at rest).
 ///
-/// Newton's method with a finite-difference Jacobian kept by Broyden's update and renewed when it
-/// stops paying. A step that raises the residuals is halved; one that leads beyond the range of a
+/// Newton's method on controls, motion and inflow together: each column of the Jacobian, by differences, holds the change of the
+/// response too, so that a step leads to its residuals and to the response where it starts. Broyden's update keeps all
+/// three; the Jacobian is renewed when it stops paying. Responses are as exact as the balance asks. A step that raises the residuals is halved; one that leads beyond the range of a
 /// control stops at its limit, and out of reach is what still points beyond it from there.
 ///
 /// # Errors
@@ -212,13 +284,44 @@ impl Problem<'_> {
         Ok((rotor, residual))
     }
 
+    /// The same after a step from a response, no more exact than the residuals ask that the step is expected to leave; where these
+    /// are met, as exact as the last response is to be.
+    fn on_the_way(
+        &self,
+        solver: &mut RotorSolver,
+        base: &Base<'_>,
+        x: &DVector<f64>,
+        predicted: &RotorSolution,
+    ) -> Result<Iterate, TrimError> {
+        let expected = LEFT_BY_A_STEP * base.current.1.amax();
+        let is_linear = solver.rotor().model().nonlinear.is_linear();
+        if !is_linear || expected <= ON_THE_WAY * base.tolerance {
+            return self.evaluate(solver, x, Some(predicted));
+        }
+        let exact = solver.tolerances();
+        let enough = ResponseTolerances {
+            inflow: exact.inflow.max(INFLOW_ON_THE_WAY * expected),
+            periodicity: exact.periodicity.max(PERIODICITY_ON_THE_WAY * expected),
+            ..exact
+        };
+        *solver = solver.with_tolerances(enough);
+        let found = self.evaluate(solver, x, Some(predicted));
+        *solver = solver.with_tolerances(exact);
+        match found {
+            Ok((rotor, residual)) if residual.amax() <= base.tolerance => {
+                self.evaluate(solver, x, Some(&rotor))
+            }
+            found => found,
+        }
+    }
+
     /// Columns are independent and computed in parallel from the same starting point.
-    fn jacobian(
+    fn slope(
         &self,
         solver: &RotorSolver,
         x: &DVector<f64>,
         base: &Iterate,
-    ) -> Result<DMatrix<f64>, TrimError> {
+    ) -> Result<TrimSlope, TrimError> {
         let exact = solver.tolerances();
         let enough = ResponseTolerances {
             periodicity: exact.periodicity.max(COLUMN_PERIODICITY),
@@ -231,11 +334,14 @@ impl Problem<'_> {
                 let mut moved = x.clone();
                 moved[j] += JACOBIAN_STEP;
                 let mut solver = solver.with_tolerances(enough);
-                let (_, residual) = self.evaluate(&mut solver, &moved, Some(&base.0))?;
-                Ok((residual - &base.1) / JACOBIAN_STEP)
+                let (response, residual) = self.evaluate(&mut solver, &moved, Some(&base.0))?;
+                let mut change = StateChange::between(&base.0, &response);
+                change.scale(1.0 / JACOBIAN_STEP);
+                Ok(((residual - &base.1) / JACOBIAN_STEP, change))
             })
-            .collect::<Result<Vec<DVector<f64>>, TrimError>>()?;
-        Ok(DMatrix::from_columns(&columns))
+            .collect::<Result<Vec<(DVector<f64>, StateChange)>, TrimError>>()?;
+        let (columns, responses): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        Ok(TrimSlope { residuals: DMatrix::from_columns(&columns), responses })
     }
 
     /// The part of a step, at most 1, after which the first unknown meets its limit, and which.
@@ -348,8 +454,8 @@ impl Problem<'_> {
         let solidity = solver.rotor().model().solidity();
         let stalls = !solver.rotor().model().nonlinear.is_linear();
         progress.note(&current, solidity, theta0_rad(&x));
-        let mut jacobian: Option<DMatrix<f64>> =
-            start.and_then(|s| s.jacobian.clone()).filter(|j| j.nrows() == self.balance.unknowns);
+        let mut slope = start.and_then(|s| s.slope.clone());
+        slope = slope.filter(|slope| slope.residuals.nrows() == self.balance.unknowns);
         for iteration in 0..=settings.max_iterations {
             let residual = current.1.amax();
             if self.balance.unknowns == 0 || residual <= settings.tolerance {
@@ -363,15 +469,15 @@ impl Problem<'_> {
                     residual,
                     residual_history: progress.history.clone(),
                     iterations: iteration,
-                    jacobian,
+                    slope,
                 });
             }
-            let (matrix, fresh) = match jacobian.take() {
-                Some(kept) => (kept, false),
-                None => (self.jacobian(solver, &x, &current)?, true),
+            let (mut known, fresh) = match slope.take() {
+                Some(kept) => (kept.in_inflow_of(&current.0), false),
+                None => (self.slope(solver, &x, &current)?, true),
             };
             let singular = || TrimError::Singular { iteration, residual };
-            let step = -matrix.clone().lu().solve(&current.1).ok_or_else(singular)?;
+            let step = -known.residuals.clone().lu().solve(&current.1).ok_or_else(singular)?;
             // a Newton step far from trim may not turn a control by more than 0.2 rad
             let largest = step.iter().take(5).fold(0.0_f64, |m, s| m.max(s.abs()));
             let step = step * (0.2 / largest.max(0.2));
@@ -399,20 +505,21 @@ impl Problem<'_> {
             if stalls && progress.stands_still() {
                 return Err(no_descent(progress));
             }
-            let found = self.descend(solver, &x, &(step * part), &current, progress)?;
-            let Some((step, new)) = found else {
+            let base =
+                Base { x: &x, current: &current, slope: &known, tolerance: settings.tolerance };
+            let found = self.descend(solver, &base, &(step * part), progress)?;
+            let Some(Gone { step, reached, predicted }) = found else {
                 if !fresh {
                     continue;
                 }
                 return Err(no_descent(progress));
             };
-            let gained = new.1.amax() <= 0.3 * residual;
-            // Broyden's rank-one update; a matrix that stopped paying is computed anew
-            let predicted = &current.1 + &matrix * &step;
-            let updated = &matrix + (&new.1 - predicted) * step.transpose() / step.norm_squared();
-            jacobian = (gained || fresh).then_some(updated);
+            let gained = reached.1.amax() <= 0.3 * residual;
+            // a slope that stopped paying is computed anew
+            known.update(&step, [&current, &reached], &predicted);
+            slope = (gained || fresh).then_some(known);
             x += &step;
-            current = new;
+            current = reached;
             progress.note(&current, solidity, theta0_rad(&x));
         }
         Err(TrimError::NotConverged {
@@ -430,17 +537,20 @@ impl Problem<'_> {
     fn descend(
         &self,
         solver: &mut RotorSolver,
-        x: &DVector<f64>,
+        base: &Base<'_>,
         step: &DVector<f64>,
-        current: &Iterate,
         progress: &mut Progress,
-    ) -> Result<Option<(DVector<f64>, Iterate)>, TrimError> {
+    ) -> Result<Option<Gone>, TrimError> {
+        let Base { x, current, slope, .. } = base;
         let norm = current.1.norm();
         let mut failure = None;
         for halvings in 0..=LARGEST_HALVINGS {
             let step = step * 0.5_f64.powi(halvings);
-            match self.evaluate(solver, &(x + &step), Some(&current.0)) {
-                Ok(new) if new.1.norm() < norm => return Ok(Some((step, new))),
+            let predicted = slope.predicted(&current.0, &step)?;
+            match self.on_the_way(solver, base, &(*x + &step), &predicted) {
+                Ok(reached) if reached.1.norm() < norm => {
+                    return Ok(Some(Gone { step, reached, predicted }));
+                }
                 Ok(_) => failure = None,
                 Err(error) => {
                     progress.lost += usize::from(is_lost(&error));

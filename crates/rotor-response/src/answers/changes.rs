@@ -53,6 +53,42 @@ impl WakeDrive {
 }
 
 impl StateChange {
+    /// The change from one response to another; without a change of the inflow where they have inflows of different kinds.
+    #[must_use]
+    pub fn between(from: &RotorSolution, to: &RotorSolution) -> Self {
+        let (before, after) = (from.inflow.parameters(), to.inflow.parameters());
+        let inflow = if before.len() == after.len() {
+            after.iter().zip(&before).map(|(a, b)| a - b).collect()
+        } else {
+            vec![0.0; after.len()]
+        };
+        let nodal = &to.orbit.nodal - &from.orbit.nodal;
+        Self {
+            orbit: Orbit { nodal },
+            accelerations: &to.accelerations - &from.accelerations,
+            inflow,
+        }
+    }
+
+    /// The same for a response with another kind of inflow, of which nothing is known.
+    #[must_use]
+    pub fn in_inflow_of(mut self, response: &RotorSolution) -> Self {
+        let count = response.inflow.parameters().len();
+        if self.inflow.len() != count {
+            self.inflow = vec![0.0; count];
+        }
+        self
+    }
+
+    /// `self *= factor`.
+    pub fn scale(&mut self, factor: f64) {
+        self.orbit.nodal *= factor;
+        self.accelerations *= factor;
+        for value in &mut self.inflow {
+            *value *= factor;
+        }
+    }
+
     /// No change of the same size.
     #[must_use]
     pub fn zero(&self) -> Self {

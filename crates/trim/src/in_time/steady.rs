@@ -195,13 +195,14 @@ pub fn steady_in_time(
     let mu = begun.trim.flight.advance_ratio;
     let balance = Balance::new(solver, mu, target)?;
     let unknowns = balance.unknowns_of(&begun.trim.controls, &begun.trim.attitude);
-    let jacobian = match &begun.trim.jacobian {
+    let jacobian = match &begun.trim.slope {
         _ if unknowns.is_empty() => None,
-        Some(known) => Some(known.clone()),
+        Some(known) => Some(known.residuals.clone()),
         None => {
             let of_trim = TrimSettings { tolerance: 1e-6, ..TrimSettings::default() };
             let of = |inflow| trim(&mut solver.clone(), &inflow, mu, target, &of_trim, None);
-            of(LinearInflow::Drees).or_else(|_| of(LinearInflow::Uniform))?.jacobian
+            let found = of(LinearInflow::Drees).or_else(|_| of(LinearInflow::Uniform))?;
+            found.slope.map(|slope| slope.residuals)
         }
     };
     let march = CoupledInTime::new(solver, begun, settings.march)?;
