@@ -1,9 +1,8 @@
 //! The flight that a case describes.
 
-use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath, fly};
+use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
-use rayon::prelude::*;
 use rotor_study::case::{Case, FailureNotice, FlightController, FlightValues, TrimValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
 use serde::Serialize;
@@ -59,7 +58,7 @@ pub struct FlightSummary {
 
 impl FlightSummary {
     /// Of the points of a flight, one at least, whose last disturbance ends at a time.
-    fn of(points: &[FlightPoint], disturbed_s: f64) -> Self {
+    pub(crate) fn of(points: &[FlightPoint], disturbed_s: f64) -> Self {
         let count = points.len() as f64;
         let mean = |of: &dyn Fn(&FlightPoint) -> f64| points.iter().map(of).sum::<f64>() / count;
         let last = &points[points.len().saturating_sub(END_CYCLES)..];
@@ -84,32 +83,6 @@ impl FlightSummary {
             power_watt: mean(&|p| p.power_watt),
         }
     }
-}
-
-/// Flies a validated case with a flight, all its controllers; `done` is called after the trims and after each flight.
-///
-/// # Errors
-/// [`FlightError`]: trims, the linearised rotor, actuators, controllers; a range of voltages that is none.
-pub fn fly_case(
-    case: &Case,
-    values: &FlightValues,
-    model: &ActuatorModel,
-    done: &(dyn Fn() + Sync),
-) -> Result<FlownCase, FlightError> {
-    let path = path_of(case, values)?;
-    done();
-    let model = ranged(case, model)?;
-    let flight = flight_of(case, values, &path, &model)?;
-    let start = path.loads(flight.state_at(0.0), &[])?;
-    let disturbed_s = last_disturbance_s(values);
-    let one = |&controller: &FlightController| {
-        let points = fly(&flight, &guidance_of(controller, case, values))?;
-        done();
-        let summary = FlightSummary::of(&points, disturbed_s);
-        Ok(FlownController { controller: controller.name(), summary, points })
-    };
-    let flights = values.controllers.par_iter().map(one).collect::<Result<_, FlightError>>()?;
-    Ok(FlownCase { start, flights })
 }
 
 /// An actuator with the range of voltages of a case.
@@ -233,7 +206,7 @@ pub(crate) fn guidance_of(
 }
 
 /// When the last change of the schedule has ended, s; 0 without any.
-fn last_disturbance_s(values: &FlightValues) -> f64 {
+pub(crate) fn last_disturbance_s(values: &FlightValues) -> f64 {
     let ends = [
         (!values.is_level()).then_some(values.ramp_at_s + values.ramp_s),
         values.thrust_step.map(|step| step.at_s + step.length_s),

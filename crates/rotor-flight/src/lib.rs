@@ -5,7 +5,8 @@
 //! - *Flaps* ([`FlapMarch`]): every actuator is marched sample by sample through its hysteresis, all harmonics at once, its
 //!   bias slowly led so that the mean flap angle vanishes.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
-//! - *Case* ([`fly_case`]): the flight that a case describes, its controllers side by side.
+//! - *Case* ([`FlyingCase`]): the flight that a case describes, its controllers side by side, many draws of its noise, and how
+//!   wrong T may be along it.
 //! - *Failures* ([`failures_of_case`]): what control reaches when a flap or an actuator of one blade, or a load cell, fails.
 //! - *What leaves it* ([`exported_case`]): T over the knots, as arrays with names and units; its controllers, for other languages
 //!   ([`controllers_of_case`]); T that comes back ([`handed_t`]); the rotor as state space ([`state_space_of_case`]).
@@ -20,28 +21,31 @@ mod failures;
 mod flaps;
 mod flight;
 mod flown;
+mod flying_case;
 mod handed;
+mod margins;
 mod path;
 mod pilot;
 mod state_space;
 mod tables;
 mod wake_in_time;
-mod wake_in_time_text;
 
-pub use case_flight::{FlightSummary, FlownCase, FlownController, fly_case};
+pub use case_flight::{FlightSummary, FlownCase, FlownController};
 pub use error::FlightError;
 pub use exported::{controllers_of_case, dissimilar_note, exported_case};
 pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
+pub use flying_case::{DrawnCase, DrawnController, FlyingCase};
 pub use handed::handed_t;
+pub use margins::{MarginPoint, MarginSet, MarginStudy};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 pub use state_space::state_space_of_case;
-pub use tables::{failures_csv, flight_csv, load_amplitudes};
+pub use tables::{draws_csv, failures_csv, flight_csv, load_amplitudes, margins_csv};
+pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
 pub use wake_in_time::{FoundInTime, InTimeQuestion, MeanLine, WakeInTimeResult, wake_in_time};
-pub use wake_in_time_text::{wake_in_time_csv, wake_in_time_text};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -1,6 +1,8 @@
 //! Flights and failures as CSV text.
 
-use crate::{FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController};
+use crate::{
+    DrawnCase, FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController, MarginStudy,
+};
 use rotor_study::HubLoads;
 
 /// Amplitudes of the six hub loads, N and N m, of cosine and sine parts in the units `m0 Omega^2 R^2` (N) and
@@ -95,4 +97,68 @@ pub fn failures_csv(study: &FailureStudy) -> String {
         format!("{},{},{}\n", line.failure.name(), line.control.name(), numbers.join(","))
     };
     header.to_owned() + &study.lines.iter().map(row).collect::<String>()
+}
+
+/// Draws as CSV text, a row for each controller and cycle: 5, 50 and 95 % of the draws lie at or below.
+pub fn draws_csv(drawn: &DrawnCase) -> String {
+    let mut text =
+        "controller,time_s,j_over_j0_5_percent,j_over_j0_median,j_over_j0_95_percent\n".to_owned();
+    for own in &drawn.controllers {
+        for (time_s, [low, middle, high]) in &own.cycles {
+            text += &format!("{},{time_s},{low},{middle},{high}\n", own.controller);
+        }
+    }
+    text
+}
+
+/// Margins as CSV text, a row for each set of harmonics and advance ratio of its T. `none` stands where nothing diverges.
+pub fn margins_csv(study: &MarginStudy) -> String {
+    let Some(first) = study.sets.first().and_then(|set| set.points.first()) else {
+        return String::new();
+    };
+    let flaps = (1..=first.flap_overshoot_deg.len()).map(|k| format!("flap{k}_overshoot_deg"));
+    let loads = HubLoads::NAMES.iter().map(|name| format!("{name}_phase_deg"));
+    let gains = HubLoads::NAMES.iter().map(|name| format!("{name}_gain"));
+    let places = || study.advance_ratios.iter();
+    let radii = places().map(|mu| format!("radius_at_{mu}"));
+    let whole = places().map(|mu| format!("whole_step_radius_at_{mu}"));
+    let start = [
+        "per_rev",
+        "t_of_advance_ratio",
+        "condition",
+        "common_phase_deg",
+        "common_gain",
+        "common_overshoot_deg",
+        "holds_from",
+        "holds_to",
+    ];
+    let names = start.into_iter().map(str::to_owned);
+    let names: Vec<String> =
+        names.chain(flaps).chain(loads).chain(gains).chain(radii).chain(whole).collect();
+    let mut text = names.join(",") + "\n";
+    let number = |value: f64| if value.is_finite() { value.to_string() } else { "none".to_owned() };
+    for set in &study.sets {
+        let harmonics = set.harmonics.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
+        for point in &set.points {
+            let of_all = [
+                point.advance_ratio,
+                point.condition,
+                point.common_phase_deg,
+                point.common_gain,
+                point.common_overshoot_deg,
+            ];
+            let within = point.holds_within.iter().map(|mu| mu.unwrap_or(f64::INFINITY));
+            let each = of_all
+                .into_iter()
+                .chain(within)
+                .chain(point.flap_overshoot_deg.iter().copied())
+                .chain(point.load_phase_deg.iter().copied())
+                .chain(point.load_gain.iter().copied())
+                .chain(point.radius.iter().copied())
+                .chain(point.whole_step_radius.iter().copied());
+            let values: Vec<String> = each.map(number).collect();
+            text += &format!("{harmonics},{}\n", values.join(","));
+        }
+    }
+    text
 }

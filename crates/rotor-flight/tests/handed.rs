@@ -4,8 +4,9 @@
 mod common;
 
 use common::actuator;
+use preisach_dyn::ActuatorModel;
 use rotor_export::Document;
-use rotor_flight::{exported_case, fly_case, handed_t};
+use rotor_flight::{FlightError, FlownCase, FlyingCase, exported_case, handed_t};
 use rotor_study::case::{Case, FlightValues};
 use std::sync::Arc;
 
@@ -26,14 +27,22 @@ fn case() -> Case {
     case
 }
 
+fn flown(
+    case: &Case,
+    values: &FlightValues,
+    model: &ActuatorModel,
+) -> Result<FlownCase, FlightError> {
+    FlyingCase::new(case, values, model)?.fly(&|| ())
+}
+
 #[test]
 fn the_exported_t_handed_back_flies_the_same_flight_to_the_last_bit() {
     let (mut case, model) = (case(), actuator());
     let values = case.flight.clone().unwrap();
-    let own = fly_case(&case, &values, &model, &|| ()).unwrap();
+    let own = flown(&case, &values, &model).unwrap();
     let document = exported_case(&case, &model).unwrap();
     case.control.handed_t = Some(Arc::new(handed_t(&case, &document).unwrap()));
-    let handed = fly_case(&case, &values, &model, &|| ()).unwrap();
+    let handed = flown(&case, &values, &model).unwrap();
     assert_eq!(own.flights.len(), 3);
     for (own, handed) in own.flights.iter().zip(&handed.flights) {
         assert!(own.points.len() > 8);
@@ -51,7 +60,7 @@ fn the_exported_t_handed_back_flies_the_same_flight_to_the_last_bit() {
         }
     }
     case.control.handed_t = Some(Arc::new(handed_t(&case, &other).unwrap()));
-    let otherwise = fly_case(&case, &values, &model, &|| ()).unwrap();
+    let otherwise = flown(&case, &values, &model).unwrap();
     assert!(otherwise.flights[0].points[2].control_volt != own.flights[0].points[2].control_volt);
     // what is exported stays the rotor's own
     assert_eq!(exported_case(&case, &model).unwrap(), document);
@@ -112,9 +121,9 @@ fn names_units_and_shapes_that_are_not_the_cases_are_refused_in_words() {
     let document = exported_case(&Case { flight: None, ..case.clone() }, &model).unwrap();
     case.control.handed_t = Some(Arc::new(handed_t(&case, &document).unwrap()));
     let values = FlightValues { harmonics: vec![4], ..case.flight.clone().unwrap() };
-    let missing = fly_case(&case, &values, &model, &|| ()).unwrap_err();
+    let missing = flown(&case, &values, &model).unwrap_err();
     assert_eq!(missing.field(), "control.t_file");
     assert!(missing.to_string().contains("T of 3 per rev, not of 4 per rev"), "{missing}");
-    let beyond = fly_case(&case, &case.flight.clone().unwrap(), &model, &|| ()).unwrap_err();
+    let beyond = flown(&case, &case.flight.clone().unwrap(), &model).unwrap_err();
     assert!(beyond.to_string().contains("0.3 to 0.3, asked for at 0.28"), "{beyond}");
 }

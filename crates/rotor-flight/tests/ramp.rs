@@ -52,65 +52,106 @@ fn peak(points: &[FlightPoint], from_s: f64) -> f64 {
     points.iter().filter(|p| p.time_s > from_s).map(|p| p.cost_ratio).fold(0.0, f64::max)
 }
 
-/// Along the ramp a scheduled T and an estimated one follow what the loop converges to at each speed; one flap dead, `J`
-/// comes back to what the other can do.
+/// Advance ratios at which the loop is flown until it stays, and half the width of a window of the ramp about each.
+const SPEEDS: [f64; 5] = [0.17, 0.20, 0.225, 0.25, 0.28];
+const HALF_WINDOW_S: f64 = 1.5;
+
+/// `J / J0` about each of the speeds of the ramp over what the loop converges to there.
+fn along(points: &[FlightPoint], converged: &[f64]) -> Vec<f64> {
+    let each = SPEEDS.iter().zip(converged);
+    each.map(|(mu, converged)| {
+        let time_s = 10.0 + 20.0 * (mu - 0.15) / 0.15;
+        mean(points, time_s - HALF_WINDOW_S, time_s + HALF_WINDOW_S) / converged
+    })
+    .collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().copied().fold(0.0, f64::max)
+}
+
+/// Along the ramp a scheduled T and an estimated one follow what the loop converges to at each speed, under 20 draws of the
+/// noise.
 #[test]
-fn a_ramp_is_followed_and_a_failure_taken_up() {
+fn a_ramp_is_followed() {
     let (path, model) = (RotorPath::new(&Case::default(), &KNOTS).unwrap(), actuator());
     let flight = flight(&path, &model);
-    // what the loop converges to where the flight is at half the ramp
-    let still = Flight { advance_ratio: vec![(0.0, 0.225)], noise_share: 0.0, ..flight.clone() };
-    let converged = mean(&fly(&still, &Guidance::Scheduled).unwrap(), 30.0, 40.0);
-    for guidance in [Guidance::Fixed, Guidance::Scheduled] {
-        let points = fly(&flight, &guidance).unwrap();
-        let (ramp, end) = (mean(&points, 18.0, 22.0), mean(&points, 35.0, 41.0));
-        println!("{guidance:?}: {ramp:.3} ({converged:.3}), end {end:.3}");
+    let converged = SPEEDS.map(|mu| {
+        let still = Flight { advance_ratio: vec![(0.0, mu)], noise_share: 0.0, ..flight.clone() };
+        mean(&fly(&still, &Guidance::Scheduled).unwrap(), 30.0, 40.0)
+    });
+    println!("converged at {SPEEDS:?}: {converged:.3?}");
+    let over = |guidance: &Guidance, seed: u64| {
+        let points = fly(&Flight { seed, ..flight.clone() }, guidance).unwrap();
         assert!((points[0].cost_ratio - 1.0).abs() < 0.05, "{:?}", points[0]);
-        assert!(ramp < 1.10 * converged, "{ramp} {converged}");
-    }
-    let adaptive = |baseline_drift, seed| {
-        let settings = EstimatorSettings {
+        (along(&points, &converged), peak(&points, 5.0))
+    };
+    println!("fixed T: {:.3?}", over(&Guidance::Fixed, 1).0);
+    let worst = |guidance: &Guidance| {
+        (0..SEEDS).map(|seed| over(guidance, seed)).fold((0.0_f64, 0.0_f64), |worst, found| {
+            (worst.0.max(largest(&found.0)), worst.1.max(found.1))
+        })
+    };
+    let scheduled = worst(&Guidance::Scheduled);
+    println!("scheduled: {scheduled:.3?} over converged and highest");
+    assert!(scheduled.0 < 1.10 && scheduled.1 < 0.5, "{scheduled:?}");
+    let adaptive = |baseline_drift| {
+        Guidance::Adaptive(EstimatorSettings {
             uncertainty: 0.1,
             drift: 0.05,
             baseline_drift,
             ..EstimatorSettings::in_flight(70.0)
-        };
-        let points =
-            fly(&Flight { seed, ..flight.clone() }, &Guidance::Adaptive(settings)).unwrap();
-        (mean(&points, 18.0, 22.0) / converged, peak(&points, 5.0))
+        })
     };
     // Z0 changes faster than a filter expects that lets it walk by 1 % a cycle: it takes the ramp for failures
-    let found: Vec<(f64, f64)> = (0..SEEDS).map(|seed| adaptive(0.2, seed)).collect();
-    let most = found.iter().fold((0.0_f64, 0.0_f64), |m, f| (m.0.max(f.0), m.1.max(f.1)));
-    let narrow = adaptive(0.01, 1);
-    println!("adaptive: {most:.3?} over converged and highest; with a walk of 1 %: {narrow:.3?}");
+    let most = worst(&adaptive(0.2));
+    let narrow = over(&adaptive(0.01), 1);
+    println!("adaptive: {most:.3?}; with a walk of 1 %: {narrow:.3?}");
     assert!(most.0 < 1.15 && most.1 < 0.5, "{most:?}");
-    assert!(narrow.0 > 1.15 || narrow.1 > 0.5, "{narrow:?}");
+    assert!(largest(&narrow.0) > 1.15 || narrow.1 > 0.5, "{narrow:?}");
 }
 
-/// One flap dead at 15 s: told or not, `J` ends where the other flap alone gets it.
+/// Amplitude limit at which no flap that fails raises `J` beyond 1.2 `J0`, and one at which it does, V.
+const SAFE_VOLT: f64 = 60.0;
+const FULL_VOLT: f64 = 70.0;
+
+/// One flap dead at 15 s, told or not, under 20 draws of the noise: `J` never above 1.2 `J0` within the safe limit, and at the
+/// end where the other flap alone gets it.
 #[test]
 fn a_failure_is_taken_up() {
     let (path, model) = (RotorPath::new(&Case::default(), &[0.30]).unwrap(), actuator());
-    let flight = Flight { advance_ratio: vec![(0.0, 0.30)], ..flight(&path, &model) };
+    let level = Flight { advance_ratio: vec![(0.0, 0.30)], ..flight(&path, &model) };
     let adaptive = Guidance::Adaptive(EstimatorSettings::in_flight(70.0));
+    let within = |limit_volt: f64, seed: u64| {
+        let mut flight = Flight { seed, ..level.clone() };
+        flight.settings.amplitude_limit_volt = vec![limit_volt; 2];
+        flight
+    };
+    let failing = |flight: &Flight<'_>, flap, time_s: f64, is_told| {
+        let failure = Some(FlapFailure { flap, time_s, stuck_deg: 0.0, is_told });
+        fly(&Flight { failure, ..flight.clone() }, &adaptive).unwrap()
+    };
     for flap in [0, 1] {
-        let failing = |time_s: f64, is_told| {
-            let failure = Some(FlapFailure { flap, time_s, stuck_deg: 0.0, is_told });
-            fly(&Flight { failure, ..flight.clone() }, &adaptive).unwrap()
-        };
-        let alone = mean(&failing(0.0, true), 30.0, 41.0);
+        let alone = mean(&failing(&within(SAFE_VOLT, 1), flap, 0.0, true), 30.0, 41.0);
         for is_told in [true, false] {
-            let points = failing(15.0, is_told);
-            let (before, end) = (mean(&points, 10.0, 15.0), mean(&points, 35.0, 41.0));
-            let highest = peak(&points, 15.0);
+            let (mut highest, mut end, mut before) = (0.0_f64, 0.0_f64, 1.0_f64);
+            for seed in 0..SEEDS {
+                let points = failing(&within(SAFE_VOLT, seed), flap, 15.0, is_told);
+                highest = highest.max(peak(&points, 15.0));
+                end = end.max(mean(&points, 35.0, 41.0));
+                before = before.min(mean(&points, 10.0, 15.0));
+            }
             println!("{flap} {is_told}: {before:.3}, peak {highest:.3}, end {end:.3} ({alone:.3})");
-            // the peak is that of the cycle of the failure: of the outboard flap more than J0
-            let bound = [0.8, 1.35][flap];
-            assert!(end - alone < 0.05 && highest < bound, "{flap} {is_told}: {end} {alone}");
+            assert!(
+                highest < 1.2 && end - alone < 0.05,
+                "{flap} {is_told}: {highest} {end} {alone}"
+            );
             assert!(alone > before + 0.02, "{alone} {before}");
         }
     }
+    let beyond = peak(&failing(&within(FULL_VOLT, 1), 1, 15.0, true), 15.0);
+    println!("peak with up to {FULL_VOLT} V: {beyond:.3}");
+    assert!(beyond > 1.2, "{beyond}");
 }
 
 /// Flights that cannot be are refused.

@@ -21,6 +21,15 @@ pub struct TMargins {
     pub flap_overshoot_deg: Vec<f64>,
 }
 
+/// The least error of one load in T, one at a time, at which the spectral radius of (C.14) reaches 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadMargin {
+    /// Phase error, deg, the smaller of lag and lead; 180 where none diverges.
+    pub phase_deg: f64,
+    /// Gain of the load over that in T; infinity where none up to 1000 diverges.
+    pub gain: f64,
+}
+
 /// Steps of the search for the first crossing; it is then bisected.
 const PHASE_STEPS: u32 = 180;
 const GAIN_STEPS: u32 = 120;
@@ -57,21 +66,17 @@ impl FeedbackLaw {
         let controls = layout.len();
         crate::error::check_length("controls of T", self.shape().1, controls)?;
         let turned = |part: Range<usize>, size: &dyn Fn(&TMatrix) -> Result<f64, ControlError>| {
-            let sided = |side: f64| {
-                first_crossing(180.0, PHASE_STEPS, |deg| {
-                    size(&self.t().turned_within(part.clone(), 1.0, side * deg.to_radians())?)
-                })
-            };
-            Ok(sided(1.0)?.min(sided(-1.0)?))
+            least_phase_deg(|phase_rad| {
+                size(&self.t().turned_within(part.clone(), 1.0, phase_rad)?)
+            })
         };
         let phase = |part| turned(part, &|there| self.relaxed_spectral_radius(rho, gain, there));
         let overshoot = |part| turned(part, &|there| self.overshoot(rho, gain, there, baseline));
         let largest = |part: Range<usize>| -> Result<f64, ControlError> {
-            let found = first_crossing(LARGEST_GAIN.ln(), GAIN_STEPS, |log| {
-                let stronger = self.t().turned_within(part.clone(), log.exp(), 0.0)?;
+            least_gain(|stronger| {
+                let stronger = self.t().turned_within(part.clone(), stronger, 0.0)?;
                 self.relaxed_spectral_radius(rho, gain, &stronger)
-            })?;
-            Ok(if found < LARGEST_GAIN.ln() { found.exp() } else { f64::INFINITY })
+            })
         };
         let width = controls / layout.flaps();
         let flaps = || (0..layout.flaps()).map(|flap| flap * width..(flap + 1) * width);
@@ -82,6 +87,27 @@ impl FeedbackLaw {
             flap_overshoot_deg: flaps().map(overshoot).collect::<Result<_, _>>()?,
             flap_phase_deg: flaps().map(phase).collect::<Result<_, _>>()?,
             flap_gain: flaps().map(largest).collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// How wrong T may be in one load alone, whose cosine and sine are the rows `2 load` and `2 load + 1`. Arguments as
+    /// [`Self::margins`].
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for a load that T lacks; as [`Self::relaxed_spectral_radius`].
+    pub fn load_margin(
+        &self,
+        rho: f64,
+        gain: f64,
+        load: usize,
+    ) -> Result<LoadMargin, ControlError> {
+        let radius = |of_load: f64, phase_rad: f64| {
+            let there = self.t().with_load_turned(load, of_load, phase_rad)?;
+            self.relaxed_spectral_radius(rho, gain, &there)
+        };
+        Ok(LoadMargin {
+            phase_deg: least_phase_deg(|phase_rad| radius(1.0, phase_rad))?,
+            gain: least_gain(|stronger| radius(stronger, 0.0))?,
         })
     }
 
@@ -107,6 +133,19 @@ impl FeedbackLaw {
         }
         Ok(largest - ROUNDING)
     }
+}
+
+/// The least phase, deg, lag or lead, at which a radius reaches 1; 180 for none.
+fn least_phase_deg(radius: impl Fn(f64) -> Result<f64, ControlError>) -> Result<f64, ControlError> {
+    let sided =
+        |side: f64| first_crossing(180.0, PHASE_STEPS, |deg| radius(side * deg.to_radians()));
+    Ok(sided(1.0)?.min(sided(-1.0)?))
+}
+
+/// The least gain above 1 at which a radius reaches 1; infinity for none up to the largest.
+fn least_gain(radius: impl Fn(f64) -> Result<f64, ControlError>) -> Result<f64, ControlError> {
+    let found = first_crossing(LARGEST_GAIN.ln(), GAIN_STEPS, |log| radius(log.exp()))?;
+    Ok(if found < LARGEST_GAIN.ln() { found.exp() } else { f64::INFINITY })
 }
 
 /// Where a radius first reaches 1 between 0 and `end`; `end` if nowhere.

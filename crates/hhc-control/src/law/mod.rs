@@ -6,7 +6,7 @@ mod spectrum;
 mod t_matrix;
 
 pub use lag::{LagLoss, lag_loss};
-pub use margins::TMargins;
+pub use margins::{LoadMargin, TMargins};
 pub use t_matrix::TMatrix;
 
 use crate::{ControlError, LoadWeights, error};

@@ -122,6 +122,28 @@ impl TMatrix {
         Ok(Self { matrix })
     }
 
+    /// The same with the harmonic of one load multiplied by a complex factor `g exp(i phi)`: what an instrument of another gain
+    /// and phase makes of it. Rows `2 load` and `2 load + 1` are its cosine and its sine.
+    ///
+    /// # Errors
+    /// [`ControlError::OutOfRange`] for a load that T lacks, [`ControlError::NotFinite`].
+    pub fn with_load_turned(
+        &self,
+        load: usize,
+        gain: f64,
+        phase_rad: f64,
+    ) -> Result<Self, ControlError> {
+        error::check_vector("gain and phase of a load", &[gain, phase_rad], 2)?;
+        let (what, count) = ("loads of the T matrix", self.loads());
+        error::check_range(2 * load + 1 < count, what, count as f64, "a pair for every load")?;
+        let (sin, cos) = phase_rad.sin_cos();
+        let mut matrix = self.matrix.clone();
+        let (cosine, sine) = (self.matrix.row(2 * load), self.matrix.row(2 * load + 1));
+        matrix.set_row(2 * load, &((cosine * cos - sine * sin) * gain));
+        matrix.set_row(2 * load + 1, &((sine * cos + cosine * sin) * gain));
+        Ok(Self { matrix })
+    }
+
     /// Difference from a reference matrix, relative to that matrix.
     ///
     /// ```text

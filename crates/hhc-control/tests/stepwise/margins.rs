@@ -81,6 +81,24 @@ fn flights_diverge_where_the_radius_says() {
             });
             assert!((found / gain - 1.0).abs() < 0.05, "{harmonic} {part:?}: {found} {gain}");
         }
+        // one load alone
+        for load in [0, 2, 5] {
+            let margin = law(&t).load_margin(0.0, GAIN, load).unwrap();
+            let sides = [1.0, -1.0].map(|side| {
+                flown_margin((0.5 * margin.phase_deg, 180.0), &z0, |deg| {
+                    Ok([t.clone(), t.with_load_turned(load, 1.0, side * deg.to_radians())?])
+                })
+            });
+            let found = sides[0].min(sides[1]);
+            println!("{harmonic}/rev, load {load}: {margin:?}, flown {found:.1} deg");
+            assert!((found / margin.phase_deg - 1.0).abs() < 0.05, "{load}: {found} {margin:?}");
+            if margin.gain.is_finite() {
+                let found = flown_margin((0.5 * margin.gain, 1.5 * margin.gain), &z0, |gain| {
+                    Ok([t.clone(), t.with_load_turned(load, gain, 0.0)?])
+                });
+                assert!((found / margin.gain - 1.0).abs() < 0.05, "{load}: {found} {margin:?}");
+            }
+        }
         // J rises above J0 on the way from there on, and not before
         let parts = [0..4, 0..2, 2..4];
         let overshoots = [

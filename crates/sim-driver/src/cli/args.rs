@@ -197,6 +197,12 @@ pub struct FlyArgs {
     /// the case: failures.csv. Some 10 s more.
     #[arg(long)]
     pub failures: bool,
+    /// Also show how wrong T may be: phase, gain, one flap, one load, the T of another speed; margins.csv.
+    #[arg(long)]
+    pub margins: bool,
+    /// Also fly so many draws of the noise, the same for every controller: draws.csv.
+    #[arg(long, value_name = "N")]
+    pub draws: Option<usize>,
     /// Folder for flight.csv and flight.html; out/ and the name of the case if left out.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

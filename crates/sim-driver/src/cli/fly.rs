@@ -1,22 +1,31 @@
 //! `hhc fly`.
 
 use super::args::FlyArgs;
-use super::{folder_or, overridden, warn, write_texts};
+use super::{check_range, folder_or, overridden, warn, write_texts};
 use crate::SimError;
 use crate::case::load_case;
 use crate::files::refuse_unwritable;
-use crate::flight::{flight_csv, flight_html, flown};
+use crate::flight::{Beside, flight_csv, flight_html, flown};
 use crate::output::{Format, Printable, print};
-use rotor_flight::failures_csv;
+use crate::problem::Problems;
+use rotor_flight::{draws_csv, failures_csv, margins_csv};
 
 pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);
     let out = folder_or(args.out.as_ref(), &args.case);
     refuse_unwritable(&out)?;
-    let found = flown(&loaded, args.failures)?;
+    if let Some(draws) = args.draws {
+        let mut problems = Problems::default();
+        check_range(&mut problems, "--draws", draws as f64, [1.0, 1e5], "", "50 draws, say");
+        problems.into_result(Some(()))?;
+    }
+    let beside = Beside { failures: args.failures, margins: args.margins, draws: args.draws };
+    let found = flown(&loaded, beside)?;
     let files = [("flight.csv", flight_csv(&found)), ("flight.html", flight_html(&found))];
     let failures = found.failures.as_ref().map(|study| ("failures.csv", failures_csv(study)));
-    write_texts(&out, files.into_iter().chain(failures))?;
+    let margins = found.margins.as_ref().map(|study| ("margins.csv", margins_csv(study)));
+    let draws = found.drawn.as_ref().map(|drawn| ("draws.csv", draws_csv(drawn)));
+    write_texts(&out, files.into_iter().chain(failures).chain(margins).chain(draws))?;
     warn(&found.warnings, args.format);
     print(&found.render(args.format)?)?;
     if args.format != Format::Json {

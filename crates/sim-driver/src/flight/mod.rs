@@ -1,6 +1,8 @@
 //! `hhc fly`: the flight of a case in time, as table, CSV and page.
 
+mod draws;
 mod failures;
+mod margins;
 mod page;
 
 pub use page::flight_html;
@@ -14,8 +16,8 @@ use crate::progress::Progress;
 use preisach_dyn::ActuatorModel;
 use report_page::Section;
 use rotor_flight::{
-    FailureStudy, FlightError, FlownCase, FlownController, dissimilar_note, failures_of_case,
-    fly_case,
+    DrawnCase, FailureStudy, FlightError, FlownCase, FlownController, FlyingCase, MarginStudy,
+    dissimilar_note, failures_of_case,
 };
 use serde::Serialize;
 
@@ -39,16 +41,33 @@ pub struct FlightResult {
     pub units: [f64; 2],
     /// The flights.
     pub flown: FlownCase,
+    /// Many draws of the noise, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub drawn: Option<DrawnCase>,
+    /// How wrong T may be, if asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub margins: Option<MarginStudy>,
     /// What control reaches under failures, if asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failures: Option<FailureStudy>,
 }
 
-/// Flies a case; with failures, what control reaches under them too.
+/// What is asked for beside the flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Beside {
+    /// What control reaches under failures.
+    pub failures: bool,
+    /// How wrong T may be.
+    pub margins: bool,
+    /// Draws of the noise.
+    pub draws: Option<usize>,
+}
+
+/// Flies a case, with what is asked for beside.
 ///
 /// # Errors
 /// A case without a flight; what its actuators are refused for; [`SimError::Flight`].
-pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, SimError> {
+pub fn flown(loaded: &LoadedCase, beside: Beside) -> Result<FlightResult, SimError> {
     let case = &loaded.case;
     let values = flight_values(loaded)?;
     // what is said of the actuator is of the harmonics flown
@@ -56,15 +75,23 @@ pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, S
     flying.case.control.harmonics = vec![values.harmonics.clone()];
     let actuators = case_actuators(&flying)?;
     let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
-    let progress = Progress::new(1 + values.controllers.len() + usize::from(with_failures));
+    let flights = values.controllers.len() * (1 + beside.draws.unwrap_or(0));
+    let others = usize::from(beside.margins) + usize::from(beside.failures);
+    let progress = Progress::new(1 + flights + others);
     progress.doing("trims and flights");
-    let found = fly_case(case, values, model, &|| progress.step()).and_then(|flown| {
-        progress.doing("failures");
-        let failures = with_failures.then(|| failures_of_case(case, values)).transpose()?;
-        Ok((flown, failures))
-    });
+    let find = || {
+        let flying = FlyingCase::new(case, values, model)?;
+        progress.step();
+        let flown = flying.fly(&|| progress.step())?;
+        let drawn = beside.draws.map(|draws| flying.draws(draws, &|| progress.step()));
+        progress.doing("margins and failures");
+        let margins = beside.margins.then(|| flying.margins()).transpose()?;
+        let failures = beside.failures.then(|| failures_of_case(case, values)).transpose()?;
+        Ok((flown, drawn.transpose()?, margins, failures))
+    };
+    let found = find();
     progress.finish();
-    let (flown, failures) = found.map_err(|source| flight_error(loaded, source))?;
+    let (flown, drawn, margins, failures) = found.map_err(|source| flight_error(loaded, source))?;
     let scales = case.scales();
     Ok(FlightResult {
         title: case.title.clone(),
@@ -77,6 +104,8 @@ pub fn flown(loaded: &LoadedCase, with_failures: bool) -> Result<FlightResult, S
         blades: case.rotor.blades,
         units: [scales.force_newton(), scales.moment_newton_metre()],
         flown,
+        drawn,
+        margins,
         failures,
     })
 }
@@ -180,6 +209,11 @@ impl Printable for FlightResult {
             sheet.paragraphs(note);
         }
         sheet.block(&self.summary().to_string());
+        let drawn = self.drawn.as_ref().map(draws::section);
+        let margins = self.margins.as_ref().map(margins::section);
+        for section in drawn.into_iter().chain(margins) {
+            sheet.block(&section.to_string());
+        }
         if let Some(study) = &self.failures {
             sheet.block(&failures::section(study).to_string());
         }

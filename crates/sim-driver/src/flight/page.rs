@@ -1,6 +1,6 @@
 //! The page of a flight: what happened against time, controllers beside each other.
 
-use super::{FlightResult, failures};
+use super::{FlightResult, draws, failures, margins};
 use crate::results::flap_name;
 use maud::{Markup, html};
 use report_page::pictures::{Look, Panel, PointForm, Series, legend};
@@ -19,13 +19,13 @@ fn line(name: &str, colour: usize, points: &[FlightPoint], of: Of<'_>) -> Series
     }
 }
 
-fn panel(title: &str, axis: &str, series: Vec<Series>) -> Markup {
+pub(super) fn panel(title: &str, axis: &str, series: Vec<Series>) -> Markup {
     let axes = ["time, s".to_owned(), axis.to_owned()];
     Panel { title: title.to_owned(), axes, series, ..Panel::default() }.markup()
 }
 
 /// What the lines of a picture mean.
-fn looks(series: &[Series]) -> Markup {
+pub(super) fn looks(series: &[Series]) -> Markup {
     legend(&series.iter().map(|own| own.look.clone()).collect::<Vec<_>>())
 }
 
@@ -148,6 +148,8 @@ pub fn flight_html(of: &FlightResult) -> String {
             p { "What is not commanded comes of the hysteresis: the harmonics mix." }
             (of.motions())
         }
+        @if let Some(drawn) = &of.drawn { (draws::markup(drawn)) }
+        @if let Some(study) = &of.margins { (margins::markup(study)) }
         @if let Some(study) = &of.failures { (failures::section(study)) }
     };
     page(&of.title, &body, &Charts::default())

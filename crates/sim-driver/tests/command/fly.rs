@@ -71,6 +71,26 @@ fn a_flight_is_told_drawn_and_tabled() {
 }
 
 #[test]
+fn margins_and_draws_are_tabled_and_drawn() {
+    let place = flying(
+        "duration_s: 3, start_advance_ratio: 0.18, knots: 2, harmonics: [2, 3], controllers: [Fixed]",
+    );
+    let said = place.hhc(&["fly", "case.ron", "--margins", "--draws", "4"]).done();
+    for part in ["How wrong T may be", "2, 3", "slowest T to", "Draws of the noise", "of 4"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() <= 110), "{said}");
+    let csv = place.read("out/case/margins.csv");
+    // 2/rev, 3/rev, both, each at two speeds
+    assert_eq!(rows(&csv).len(), 6, "{csv}");
+    assert!(rows(&csv)[0]["whole_step_radius_at_0.18"].parse::<f64>().unwrap() < 0.1, "{csv}");
+    assert_eq!(rows(&place.read("out/case/draws.csv")).len(), 7);
+    let page = place.read("out/case/flight.html");
+    assert!(page.contains("T of a row flown at a column") && page.contains("95 %"));
+    place.hhc(&["fly", "case.ron", "--draws", "0"]).rejected(&["--draws", "1"]);
+}
+
+#[test]
 fn failures_are_tabled() {
     let place = flying("duration_s: 2, knots: 2, harmonics: [2, 3], controllers: [Fixed]");
     let said = place.hhc(&["fly", "case.ron", "--failures"]).done();

@@ -1,5 +1,7 @@
 //! A case marched in time with its free wake, where none is periodic: means, and how sure they are.
 
+pub(crate) mod text;
+
 use crate::exported::dissimilar_note;
 use rotor_study::case::{Case, CirculationChoice, DynamicStallChoice, InflowChoice, InflowValues};
 use rotor_study::{HubLoads, StudyError, TrimmedRotor, wake_warnings};

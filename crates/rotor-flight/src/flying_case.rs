@@ -1,0 +1,180 @@
+//! A case ready to be flown: its rotor along the schedule, its actuator, its flights.
+
+use crate::case_flight::{flight_of, guidance_of, last_disturbance_s, path_of, ranged};
+use crate::{
+    Flight, FlightError, FlightPoint, FlightSummary, FlownCase, FlownController, RotorPath, fly,
+};
+use preisach_dyn::ActuatorModel;
+use rayon::prelude::*;
+use rotor_study::case::{Case, FlightController, FlightValues};
+use serde::Serialize;
+
+/// Shares of the draws at which a spread is given: all but one in twenty lie below the last, and above the first.
+const SHARES: [f64; 3] = [0.05, 0.5, 0.95];
+
+/// A validated case with a flight, trimmed and linearised along its schedule.
+#[derive(Debug, Clone)]
+pub struct FlyingCase<'a> {
+    case: &'a Case,
+    values: &'a FlightValues,
+    path: RotorPath,
+    model: ActuatorModel,
+}
+
+/// Many draws of the noise, the same for every controller.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DrawnCase {
+    /// First seed; the others follow one by one.
+    pub first_seed: u64,
+    /// Draws of each controller.
+    pub draws: usize,
+    /// In the order of the case.
+    pub controllers: Vec<DrawnController>,
+}
+
+/// The draws of one controller. Of each three numbers 5, 50 and 95 % of the draws lie at or below.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DrawnController {
+    /// Its name.
+    pub controller: &'static str,
+    /// Mean of `J / J0` over all cycles of a draw.
+    pub mean_cost_ratio: [f64; 3],
+    /// Largest `J / J0` of a cycle with control.
+    pub worst_cost_ratio: [f64; 3],
+    /// Mean over the last ten cycles.
+    pub end_cost_ratio: [f64; 3],
+    /// Draws with a cycle above `J0`.
+    pub above_j0: usize,
+    /// `J / J0` of every cycle, and the end of the cycle, s.
+    pub cycles: Vec<(f64, [f64; 3])>,
+}
+
+impl<'a> FlyingCase<'a> {
+    /// Trims and linearises the rotor along the schedule.
+    ///
+    /// # Errors
+    /// [`FlightError`]: trims, the linearised rotor; a range of voltages that is none.
+    pub fn new(
+        case: &'a Case,
+        values: &'a FlightValues,
+        model: &ActuatorModel,
+    ) -> Result<Self, FlightError> {
+        Ok(Self { case, values, path: path_of(case, values)?, model: ranged(case, model)? })
+    }
+
+    pub(crate) fn values(&self) -> &FlightValues {
+        self.values
+    }
+
+    /// The rotor along the schedule.
+    pub fn path(&self) -> &RotorPath {
+        &self.path
+    }
+
+    /// The flight with a control of other harmonics, per rev.
+    ///
+    /// # Errors
+    /// As [`Self::fly`].
+    pub fn flight_at(&self, harmonics: &[usize]) -> Result<Flight<'_>, FlightError> {
+        let values = FlightValues { harmonics: harmonics.to_vec(), ..self.values.clone() };
+        flight_of(self.case, &values, &self.path, &self.model)
+    }
+
+    /// Flies all controllers; `done` is called after each flight.
+    ///
+    /// # Errors
+    /// [`FlightError`]: actuators, rotor, controllers.
+    pub fn fly(&self, done: &(dyn Fn() + Sync)) -> Result<FlownCase, FlightError> {
+        let flight = self.flight_at(&self.values.harmonics)?;
+        let start = flight.path.loads(flight.state_at(0.0), &[])?;
+        let one = |&controller: &FlightController| {
+            let points = self.flown(&flight, controller)?;
+            done();
+            let summary = FlightSummary::of(&points, last_disturbance_s(self.values));
+            Ok(FlownController { controller: controller.name(), summary, points })
+        };
+        let flights =
+            self.values.controllers.par_iter().map(one).collect::<Result<_, FlightError>>()?;
+        Ok(FlownCase { start, flights })
+    }
+
+    fn flown(
+        &self,
+        flight: &Flight<'_>,
+        controller: FlightController,
+    ) -> Result<Vec<FlightPoint>, FlightError> {
+        fly(flight, &guidance_of(controller, self.case, self.values))
+    }
+
+    /// Flies all controllers under many draws of the noise, from the seed of the case on; `done` is called after each flight.
+    ///
+    /// # Errors
+    /// As [`Self::fly`]; [`FlightError::OutOfRange`] for no draws.
+    pub fn draws(&self, draws: usize, done: &(dyn Fn() + Sync)) -> Result<DrawnCase, FlightError> {
+        if draws == 0 {
+            let (what, value) = ("draws of the noise", 0.0);
+            return Err(FlightError::OutOfRange { what, value, expected: "1 or more" });
+        }
+        let flight = self.flight_at(&self.values.harmonics)?;
+        let (first_seed, disturbed_s) = (flight.seed, last_disturbance_s(self.values));
+        let of_controller = |&controller: &FlightController| {
+            let flights = (0..draws as u64)
+                .into_par_iter()
+                .map(|draw| {
+                    let flight = Flight { seed: first_seed + draw, ..flight.clone() };
+                    self.flown(&flight, controller).inspect(|_| done())
+                })
+                .collect::<Result<Vec<_>, FlightError>>()?;
+            Ok(DrawnController::of(controller.name(), &flights, disturbed_s))
+        };
+        let controllers = self.values.controllers.iter().map(of_controller);
+        let controllers = controllers.collect::<Result<_, FlightError>>()?;
+        Ok(DrawnCase { first_seed, draws, controllers })
+    }
+}
+
+impl DrawnController {
+    /// Of the points of all flights, one at least, which have the same cycles.
+    fn of(controller: &'static str, flights: &[Vec<FlightPoint>], disturbed_s: f64) -> Self {
+        let each: Vec<FlightSummary> =
+            flights.iter().map(|points| FlightSummary::of(points, disturbed_s)).collect();
+        let of = |part: fn(&FlightSummary) -> f64| spread(each.iter().map(part).collect());
+        let first = flights.first().map(Vec::as_slice).unwrap_or_default();
+        let cycle = |(k, point): (usize, &FlightPoint)| {
+            (point.time_s, spread(flights.iter().map(|points| points[k].cost_ratio).collect()))
+        };
+        Self {
+            controller,
+            mean_cost_ratio: of(|s| s.mean_cost_ratio),
+            worst_cost_ratio: of(|s| s.worst_cost_ratio),
+            end_cost_ratio: of(|s| s.end_cost_ratio),
+            above_j0: each.iter().filter(|s| s.worst_cost_ratio > 1.0).count(),
+            cycles: first.iter().enumerate().map(cycle).collect(),
+        }
+    }
+}
+
+/// What 5, 50 and 95 % of some values, one at least, lie at or below.
+fn spread(mut values: Vec<f64>) -> [f64; 3] {
+    values.sort_by(f64::total_cmp);
+    let count = values.len();
+    // the least value with so many at or below it
+    SHARES.map(|share| {
+        let least = (1..=count).find(|n| *n as f64 >= share * count as f64 - 1e-9);
+        values[least.unwrap_or(count) - 1]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_spread_holds_its_shares() {
+        let of = |count: u32| spread((1..=count).rev().map(f64::from).collect());
+        assert_eq!(of(20), [1.0, 10.0, 19.0]);
+        assert_eq!(of(100), [5.0, 50.0, 95.0]);
+        assert_eq!(of(1), [1.0; 3]);
+        assert_eq!(of(3), [1.0, 2.0, 3.0]);
+    }
+}

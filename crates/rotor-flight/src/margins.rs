@@ -1,0 +1,157 @@
+//! How wrong T may be along the speeds of a flight: phase, gain, one load, and the speed itself.
+
+use crate::flying_case::FlyingCase;
+use crate::{FlightError, FlightState};
+use hhc_control::{FeedbackLaw, TMatrix};
+use rayon::prelude::*;
+use rotor_study::HubLoads;
+use serde::Serialize;
+
+/// Steps between two knots at which the reach of a T is looked for, and bisections of the first that diverges.
+const STEPS_PER_KNOT: usize = 4;
+const BISECTIONS: u32 = 20;
+
+/// How wrong T may be in the flights of a case, before the step of the thrust.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MarginStudy {
+    /// Part of the way that a step of the loop goes.
+    pub gain: f64,
+    /// Advance ratios of the rotor.
+    pub advance_ratios: Vec<f64>,
+    /// Every harmonic of the flight alone, then all at once.
+    pub sets: Vec<MarginSet>,
+}
+
+/// Margins of one set of harmonics.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MarginSet {
+    /// The harmonics under control, per rev.
+    pub harmonics: Vec<usize>,
+    /// At every advance ratio.
+    pub points: Vec<MarginPoint>,
+}
+
+/// How wrong the T of one advance ratio may be. Each error is alone.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MarginPoint {
+    /// Where T is right.
+    pub advance_ratio: f64,
+    /// Largest singular value of the weighted T over the smallest.
+    pub condition: f64,
+    /// Phase error of all flaps at which the loop diverges, deg; 180 for none.
+    pub common_phase_deg: f64,
+    /// Gain of the rotor over that of T at which it does; infinity for none.
+    pub common_gain: f64,
+    /// Phase error of all flaps from which `J` rises above `J0` on the way, deg; 180 for none.
+    pub common_overshoot_deg: f64,
+    /// The same of one flap alone, flap by flap: the largest difference between flaps.
+    pub flap_overshoot_deg: Vec<f64>,
+    /// Phase error of one load alone at which the loop diverges, deg, load by load; 180 for none.
+    pub load_phase_deg: Vec<f64>,
+    /// Gain of one load over that in T at which it does, load by load; infinity for none.
+    pub load_gain: Vec<f64>,
+    /// Spectral radius of the loop with this T at every advance ratio, in steps of the loop's gain; 1 and more diverges.
+    pub radius: Vec<f64>,
+    /// The same in whole steps.
+    pub whole_step_radius: Vec<f64>,
+    /// Lowest and highest advance ratio between which whole steps with this T converge; none at an end that the speeds of the
+    /// flight do not reach.
+    pub holds_within: [Option<f64>; 2],
+}
+
+impl FlyingCase<'_> {
+    /// How wrong T may be at every advance ratio of the rotor: a T that is held, the limits of the voltage left out.
+    ///
+    /// # Errors
+    /// [`FlightError`] of actuators, rotor and control.
+    pub fn margins(&self) -> Result<MarginStudy, FlightError> {
+        let all = &self.values().harmonics;
+        let alone = all.iter().map(|&n| vec![n]);
+        let together = (all.len() > 1).then(|| all.clone());
+        let sets = alone.chain(together).map(|harmonics| self.margin_set(harmonics));
+        Ok(MarginStudy {
+            gain: self.values().gain,
+            advance_ratios: self.path().advance_ratios().to_vec(),
+            sets: sets.collect::<Result<_, _>>()?,
+        })
+    }
+
+    fn margin_set(&self, harmonics: Vec<usize>) -> Result<MarginSet, FlightError> {
+        let flight = self.flight_at(&harmonics)?;
+        let steps = flight.steps()?;
+        let t_at = |advance_ratio: f64| {
+            flight.t_in(FlightState { advance_ratio, thrust_share: 0.0 }, &steps)
+        };
+        let knots = self.path().advance_ratios();
+        let each = knots.iter().map(|&mu| t_at(mu)).collect::<Result<Vec<TMatrix>, _>>()?;
+        let (weights, rho, gain) =
+            (&flight.settings.load_weights, flight.settings.effort_weight, flight.settings.gain);
+        let point = |(k, t): (usize, &TMatrix)| -> Result<MarginPoint, FlightError> {
+            let advance_ratio = knots[k];
+            let law = FeedbackLaw::new(t, weights)?;
+            let state = FlightState { advance_ratio, thrust_share: 0.0 };
+            let baseline = flight.path.loads(state, &[])?;
+            let found = law.margins(&flight.layout, rho, gain, &baseline)?;
+            let loads = (0..HubLoads::NAMES.len())
+                .map(|load| law.load_margin(rho, gain, load))
+                .collect::<Result<Vec<_>, _>>()?;
+            let radii = |gain: f64| -> Result<Vec<f64>, FlightError> {
+                each.iter()
+                    .map(|there| Ok(law.relaxed_spectral_radius(rho, gain, there)?))
+                    .collect()
+            };
+            let whole = |mu: f64| Ok(law.relaxed_spectral_radius(rho, 1.0, &t_at(mu)?)?);
+            let singular = law.singular_values();
+            let ends = singular.first().zip(singular.last());
+            Ok(MarginPoint {
+                advance_ratio,
+                condition: ends.map_or(0.0, |(first, last)| first / last),
+                common_phase_deg: found.common_phase_deg,
+                common_gain: found.common_gain,
+                common_overshoot_deg: found.common_overshoot_deg,
+                flap_overshoot_deg: found.flap_overshoot_deg,
+                load_phase_deg: loads.iter().map(|margin| margin.phase_deg).collect(),
+                load_gain: loads.iter().map(|margin| margin.gain).collect(),
+                radius: radii(gain)?,
+                whole_step_radius: radii(1.0)?,
+                holds_within: [
+                    reach(&knots[..=k], true, whole)?,
+                    reach(&knots[k..], false, whole)?,
+                ],
+            })
+        };
+        let points = each.par_iter().enumerate().map(point).collect::<Result<_, _>>()?;
+        Ok(MarginSet { harmonics, points })
+    }
+}
+
+/// Where a radius first reaches 1 from the one end of rising knots to the other; none if nowhere.
+fn reach(
+    knots: &[f64],
+    downward: bool,
+    radius: impl Fn(f64) -> Result<f64, FlightError>,
+) -> Result<Option<f64>, FlightError> {
+    let mut places: Vec<f64> = knots
+        .windows(2)
+        .flat_map(|pair| {
+            let step = (pair[1] - pair[0]) / STEPS_PER_KNOT as f64;
+            (0..STEPS_PER_KNOT).map(move |k| pair[0] + step * k as f64)
+        })
+        .chain(knots.last().copied())
+        .collect();
+    if downward {
+        places.reverse();
+    }
+    for pair in places.windows(2) {
+        let (mut inside, mut outside) = (pair[0], pair[1]);
+        if radius(outside)? < 1.0 {
+            continue;
+        }
+        for _ in 0..BISECTIONS {
+            let middle = f64::midpoint(inside, outside);
+            *(if radius(middle)? < 1.0 { &mut inside } else { &mut outside }) = middle;
+        }
+        return Ok(Some(outside));
+    }
+    Ok(None)
+}

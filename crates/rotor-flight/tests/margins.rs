@@ -1,0 +1,106 @@
+//! How wrong T may be along the speeds of a flight, flown; and draws of the noise.
+#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
+
+mod common;
+
+use common::actuator;
+use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
+use rotor_flight::{Flight, FlyingCase, Guidance, MarginPoint, fly};
+use rotor_study::case::{Case, FlightController, FlightValues};
+
+/// An ideal actuator whose voltage may grow for long.
+fn ideal() -> ActuatorModel {
+    let range = VoltageRange::new(-1e9, 1e9).unwrap();
+    let law = ActuatorLaw::Linear(LinearGain { gain_deg_per_volt: 0.04, bias_volt: 0.0 });
+    ActuatorModel::new(law, range, Calibration { deg_per_um: 0.04, zero_um: 0.0 })
+}
+
+fn case() -> Case {
+    let mut case = Case::default();
+    case.actuator.range_volt = (-1e9, 1e9);
+    case
+}
+
+fn values(harmonics: &[usize]) -> FlightValues {
+    FlightValues {
+        start_advance_ratio: 0.15,
+        end_advance_ratio: 0.35,
+        knots: 3,
+        harmonics: harmonics.to_vec(),
+        noise_percent: 0.0,
+        duration_s: 20.0,
+        controllers: vec![FlightController::Fixed, FlightController::Adaptive],
+        thrust_step: None,
+        failed_flap: None,
+        ..FlightValues::default()
+    }
+}
+
+/// Growth of the change of the control in a cycle of whole steps, where T is that of one speed and the flight is at another.
+fn growth(flying: &FlyingCase<'_>, harmonic: usize, of: f64, at: f64) -> f64 {
+    let mut flight = flying.flight_at(&[harmonic]).unwrap();
+    flight.advance_ratio = vec![(0.0, of), (1e-3, at)];
+    flight.settings.gain = 1.0;
+    flight.settings.effort_weight = 0.0;
+    flight.settings.amplitude_limit_volt = vec![1e8; 2];
+    flight.settings.rate_limit_volt = 1e8;
+    let points = fly(&flight, &Guidance::Fixed).unwrap();
+    let moved = |k: usize| {
+        let pair = points[k + 1].control_volt.iter().zip(&points[k].control_volt);
+        pair.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    (moved(30) / moved(10)).powf(1.0 / 20.0)
+}
+
+/// The radius of a T that is right is that of theory, and at the speed up to which a T is said to hold its flights begin to
+/// diverge, within 5 %.
+#[test]
+fn a_t_of_one_speed_holds_as_far_as_its_flights_do() {
+    let (case, values) = (case(), values(&[4]));
+    let flying = FlyingCase::new(&case, &values, &ideal()).unwrap();
+    let study = flying.margins().unwrap();
+    assert_eq!(study.sets.len(), 1);
+    let points: &[MarginPoint] = &study.sets[0].points;
+    for (k, point) in points.iter().enumerate() {
+        // the control weighs next to nothing
+        assert!((point.radius[k] - (1.0 - study.gain)).abs() < 1e-3, "{point:?}");
+        assert!(point.whole_step_radius[k] < 1e-3, "{point:?}");
+        let theory = (0.5 * study.gain).acos().to_degrees();
+        assert!((point.common_phase_deg - theory).abs() < 1.0, "{point:?}");
+        assert!(point.load_phase_deg.iter().all(|deg| *deg >= point.common_phase_deg - 1.0));
+    }
+    let slowest = &points[0];
+    let flown = growth(&flying, 4, 0.15, 0.35);
+    let radius = slowest.whole_step_radius[2];
+    println!("T of 0.15 at 0.35: radius {radius:.3}, flown {flown:.3}; {:?}", slowest.holds_within);
+    assert!(radius > 1.0 && (flown / radius - 1.0).abs() < 0.05, "{radius} {flown}");
+    let end = slowest.holds_within[1].unwrap();
+    let [inside, outside] = [0.95, 1.05].map(|share| growth(&flying, 4, 0.15, share * end));
+    println!("holds up to {end:.4}: flown {inside:.3} below and {outside:.3} above");
+    assert!(slowest.holds_within[0].is_none() && (0.15..0.35).contains(&end));
+    assert!(inside < 1.0 && outside > 1.0, "{inside} {outside}");
+}
+
+/// The draws of every controller are those of the same seeds, and the spread is that of its flights.
+#[test]
+fn draws_are_common_and_their_spread_is_that_of_the_flights() {
+    let case = Case::default();
+    let values = FlightValues { noise_percent: 3.0, duration_s: 6.0, knots: 2, ..values(&[3]) };
+    let flying = FlyingCase::new(&case, &values, &actuator()).unwrap();
+    let drawn = flying.draws(5, &|| ()).unwrap();
+    let flight = flying.flight_at(&[3]).unwrap();
+    let mut last: Vec<f64> = (0..5)
+        .map(|draw| {
+            let flight = Flight { seed: flight.seed + draw, ..flight.clone() };
+            fly(&flight, &Guidance::Fixed).unwrap().last().unwrap().cost_ratio
+        })
+        .collect();
+    last.sort_by(f64::total_cmp);
+    let fixed = &drawn.controllers[0];
+    assert_eq!(fixed.controller, "fixed");
+    let (_, spread) = fixed.cycles.last().unwrap();
+    assert_eq!(spread.map(f64::to_bits), [last[0], last[2], last[4]].map(f64::to_bits));
+    assert!(spread[0] < spread[2]);
+    assert_eq!(drawn.controllers[1].cycles.len(), fixed.cycles.len());
+    assert!(flying.draws(0, &|| ()).is_err());
+}
