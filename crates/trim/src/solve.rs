@@ -105,13 +105,6 @@ const INFLOW_SHARE: f64 = 0.01;
 /// Weak residual of the orbit and mismatch of the inflow of a column of the Jacobian: a ten-thousandth of its step.
 const COLUMN_PERIODICITY: f64 = 1e-9;
 const COLUMN_INFLOW: f64 = 1e-8;
-/// What a step is expected to leave of the residuals of the trim.
-const LEFT_BY_A_STEP: f64 = 0.1;
-/// Mismatch of the inflow and weak residual of the orbit of a response on the way, over the residuals expected of it, and how
-/// often these are the tolerance of the trim at least: what is nearer is solved as exactly as the last response.
-const INFLOW_ON_THE_WAY: f64 = 3e-3;
-const PERIODICITY_ON_THE_WAY: f64 = 3e-4;
-const ON_THE_WAY: f64 = 10.0;
 /// Pitch angles beyond which the linear section model means nothing, rad.
 const PITCH_LIMIT: f64 = 0.6;
 /// Shaft tilt at which a trim starts at most, rad: a larger one is approached by the steps.
@@ -184,12 +177,11 @@ impl Progress {
 /// A response, and the trim residuals that it leaves over the weight.
 type Iterate = (RotorSolution, DVector<f64>);
 
-/// Where a step begins, and how near the balance it is to come.
+/// Where a step begins.
 struct Base<'a> {
     x: &'a DVector<f64>,
     current: &'a Iterate,
     slope: &'a TrimSlope,
-    tolerance: f64,
 }
 
 /// A step that was gone, where it led, and the response that was predicted there.
@@ -205,7 +197,7 @@ const VARIABLES: [&str; 6] = ["theta0", "theta1c", "theta1s", "shaft tilt", "ban
 ///
 /// Newton's method on controls, motion and inflow together: each column of the Jacobian, by differences, holds the change of the
 /// response too, so that a step leads to its residuals and to the response where it starts. Broyden's update keeps all
-/// three; the Jacobian is renewed when it stops paying. Responses are as exact as the balance asks. A step that raises the residuals is halved; one that leads beyond the range of a
+/// three; the Jacobian is renewed when it stops paying. A step that raises the residuals is halved; one that leads beyond the range of a
 /// control stops at its limit, and out of reach is what still points beyond it from there.
 ///
 /// # Errors
@@ -282,37 +274,6 @@ impl Problem<'_> {
             found.map_err(|error| solver.rotor().blame_resonance(controls.theta0_rad, error))?;
         let residual = self.balance.residual(&rotor, &attitude);
         Ok((rotor, residual))
-    }
-
-    /// The same after a step from a response, no more exact than the residuals ask that the step is expected to leave; where these
-    /// are met, as exact as the last response is to be.
-    fn on_the_way(
-        &self,
-        solver: &mut RotorSolver,
-        base: &Base<'_>,
-        x: &DVector<f64>,
-        predicted: &RotorSolution,
-    ) -> Result<Iterate, TrimError> {
-        let expected = LEFT_BY_A_STEP * base.current.1.amax();
-        let is_linear = solver.rotor().model().nonlinear.is_linear();
-        if !is_linear || expected <= ON_THE_WAY * base.tolerance {
-            return self.evaluate(solver, x, Some(predicted));
-        }
-        let exact = solver.tolerances();
-        let enough = ResponseTolerances {
-            inflow: exact.inflow.max(INFLOW_ON_THE_WAY * expected),
-            periodicity: exact.periodicity.max(PERIODICITY_ON_THE_WAY * expected),
-            ..exact
-        };
-        *solver = solver.with_tolerances(enough);
-        let found = self.evaluate(solver, x, Some(predicted));
-        *solver = solver.with_tolerances(exact);
-        match found {
-            Ok((rotor, residual)) if residual.amax() <= base.tolerance => {
-                self.evaluate(solver, x, Some(&rotor))
-            }
-            found => found,
-        }
     }
 
     /// Columns are independent and computed in parallel from the same starting point.
@@ -505,8 +466,7 @@ impl Problem<'_> {
             if stalls && progress.stands_still() {
                 return Err(no_descent(progress));
             }
-            let base =
-                Base { x: &x, current: &current, slope: &known, tolerance: settings.tolerance };
+            let base = Base { x: &x, current: &current, slope: &known };
             let found = self.descend(solver, &base, &(step * part), progress)?;
             let Some(Gone { step, reached, predicted }) = found else {
                 if !fresh {
@@ -541,13 +501,13 @@ impl Problem<'_> {
         step: &DVector<f64>,
         progress: &mut Progress,
     ) -> Result<Option<Gone>, TrimError> {
-        let Base { x, current, slope, .. } = base;
+        let Base { x, current, slope } = base;
         let norm = current.1.norm();
         let mut failure = None;
         for halvings in 0..=LARGEST_HALVINGS {
             let step = step * 0.5_f64.powi(halvings);
             let predicted = slope.predicted(&current.0, &step)?;
-            match self.on_the_way(solver, base, &(*x + &step), &predicted) {
+            match self.evaluate(solver, &(*x + &step), Some(&predicted)) {
                 Ok(reached) if reached.1.norm() < norm => {
                     return Ok(Some(Gone { step, reached, predicted }));
                 }

@@ -322,10 +322,11 @@ impl LoadEstimator {
         // Z0 goes on from where the loads are
         for control in controls {
             let k = control + 1;
-            let lost = self.theta.column(k) * self.last_volt[control];
-            let per_volt = 1.0 / self.settings.full_scale_volt;
-            self.theta.column_mut(0).axpy(per_volt, &lost, 1.0);
-            self.theta.column_mut(k).fill(0.0);
+            let scaled = self.last_volt[control] / self.settings.full_scale_volt;
+            for mut row in self.theta.row_iter_mut() {
+                row[0] += scaled * row[k];
+                row[k] = 0.0;
+            }
             self.covariance.row_mut(k).fill(0.0);
             self.covariance.column_mut(k).fill(0.0);
             self.is_control_lost[control] = true;
