@@ -17,7 +17,7 @@ pub use in_time::{
     CoupledInTime, FlapMotion, InTimeSettings, Interval, RevolutionInTime, SteadyInTime,
     SteadySettings, steady_in_time, steady_mean,
 };
-pub use solve::{TrimSettings, TrimSolution, imbalance, mean_lift_coefficient, trim};
+pub use solve::{TrimSettings, TrimSlope, TrimSolution, imbalance, mean_lift_coefficient, trim};
 pub use vehicle::{AirframeLoads, Attitude, HorizontalTail, Vehicle, equilibrium};
 pub use wake::{WakeTrim, trim_in_free_wake, trim_in_free_wake_near};
 pub use wake_linearised::{WakeLinearised, linearised_in_wake};

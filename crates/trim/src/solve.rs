@@ -59,10 +59,10 @@ pub struct TrimSlope {
 }
 
 impl TrimSlope {
-    /// The same for a response in another kind of inflow.
-    fn in_inflow_of(self, response: &RotorSolution) -> Self {
-        let responses = self.responses.into_iter().map(|r| r.in_inflow_of(response)).collect();
-        Self { responses, ..self }
+    /// The same for a response in another kind of inflow; none for one of another blade or other points of time.
+    fn for_response(self, response: &RotorSolution) -> Option<Self> {
+        let each = self.responses.into_iter().map(|change| change.for_response(response));
+        Some(Self { responses: each.collect::<Option<_>>()?, ..self })
     }
 
     /// The response after a step, as the slope has it.
@@ -77,7 +77,7 @@ impl TrimSlope {
         for (other, part) in others.iter().zip(step.iter().skip(1)) {
             change.add(other, *part);
         }
-        from.clone().moved_start(&change)
+        from.clone().moved_blade(&change)
     }
 
     /// Broyden's update: the slope that has what a step has led to, and changes least.
@@ -276,6 +276,22 @@ impl Problem<'_> {
         Ok((rotor, residual))
     }
 
+    /// The same after a step: from where it is predicted to lead or, where nothing is found from there, from where it began.
+    /// Sections that stall may have more than one orbit: theirs is followed from where it was.
+    fn after(
+        &self,
+        solver: &mut RotorSolver,
+        x: &DVector<f64>,
+        before: &RotorSolution,
+        predicted: &RotorSolution,
+    ) -> Result<Iterate, TrimError> {
+        if !solver.rotor().model().nonlinear.is_linear() {
+            return self.evaluate(solver, x, Some(before));
+        }
+        let found = self.evaluate(solver, x, Some(predicted));
+        found.or_else(|_| self.evaluate(solver, x, Some(before)))
+    }
+
     /// Columns are independent and computed in parallel from the same starting point.
     fn slope(
         &self,
@@ -433,8 +449,9 @@ impl Problem<'_> {
                     slope,
                 });
             }
-            let (mut known, fresh) = match slope.take() {
-                Some(kept) => (kept.in_inflow_of(&current.0), false),
+            let kept = slope.take().and_then(|kept| kept.for_response(&current.0));
+            let (mut known, fresh) = match kept {
+                Some(kept) => (kept, false),
                 None => (self.slope(solver, &x, &current)?, true),
             };
             let singular = || TrimError::Singular { iteration, residual };
@@ -507,7 +524,7 @@ impl Problem<'_> {
         for halvings in 0..=LARGEST_HALVINGS {
             let step = step * 0.5_f64.powi(halvings);
             let predicted = slope.predicted(&current.0, &step)?;
-            match self.evaluate(solver, &(*x + &step), Some(&predicted)) {
+            match self.after(solver, &(*x + &step), &current.0, &predicted) {
                 Ok(reached) if reached.1.norm() < norm => {
                     return Ok(Some(Gone { step, reached, predicted }));
                 }
@@ -539,4 +556,55 @@ pub fn imbalance(
 ) -> Result<f64, TrimError> {
     let problem = Balance::new(solver, trimmed.flight.advance_ratio, target)?;
     Ok(problem.residual(response, &trimmed.attitude).amax())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Vehicle;
+    use rotor_fem::{BladeProperties, BladeSpec};
+    use rotor_response::{Couplings, Discretisation, Rotor, RotorModel};
+    use rotor_wake::LinearInflow;
+
+    /// Where a step of every unknown is predicted to lead, the response is; Broyden's update then knows it.
+    #[test]
+    fn a_step_leads_to_the_response_that_is_predicted() {
+        let blade = BladeProperties::new(BladeSpec::table_1()).unwrap();
+        let few =
+            Discretisation { modes: [2, 1, 1], time_elements: 4, ..Discretisation::default() };
+        let model = RotorModel::table_1(Couplings::Full);
+        let rotor = Arc::new(Rotor::new(model, &blade, few).unwrap());
+        let mut solver = RotorSolver::new(rotor, 0.3, ResponseTolerances::default()).unwrap();
+        let target = TrimTarget::Propulsive { weight_ct_sigma: 0.07, vehicle: Vehicle::default() };
+        let settings = TrimSettings::default();
+        let inflow = LinearInflow::Drees;
+        let found = trim(&mut solver, &inflow, 0.3, &target, &settings, None).unwrap();
+        let balance = Balance::new(&solver, 0.3, &target).unwrap();
+        let problem = Problem { inflow: &inflow, balance, flaps: 0 };
+        let x = problem.balance.unknowns_of(&found.controls, &found.attitude);
+        let base = problem.evaluate(&mut solver, &x, Some(&found.rotor)).unwrap();
+        let mut slope = problem.slope(&solver, &x, &base).unwrap();
+        let step = DVector::from_vec(vec![0.01, -0.01, 0.01, 0.01, 0.005, 0.001]);
+        let predicted = slope.predicted(&base.0, &step).unwrap();
+        let reached = problem.evaluate(&mut solver, &(&x + &step), Some(&base.0)).unwrap();
+        let off = |from: &RotorSolution, to: &RotorSolution| {
+            let inflow = from.inflow.parameters().into_iter().zip(to.inflow.parameters());
+            let inflow: f64 = inflow.map(|(a, b)| (a - b).powi(2)).sum();
+            (&from.orbit.nodal - &to.orbit.nodal).norm() + inflow.sqrt()
+        };
+        let (missed, moved) = (off(&predicted, &reached.0), off(&base.0, &reached.0));
+        println!("predicted off by {:.1e} of the way", missed / moved);
+        assert!(missed < 0.05 * moved, "{missed} {moved}");
+        slope.update(&step, [&base, &reached], &predicted);
+        let known = slope.predicted(&base.0, &step).unwrap();
+        assert!(off(&known, &reached.0) < 1e-10 * moved);
+        let apart = (&base.1 + &slope.residuals * &step - &reached.1).norm();
+        assert!(apart < 1e-12, "{apart}");
+        // a slope of another blade is of no use
+        let more = Discretisation { modes: [3, 1, 1], ..few };
+        let rotor = Rotor::new(RotorModel::table_1(Couplings::Full), &blade, more).unwrap();
+        let mut other = RotorSolver::new(Arc::new(rotor), 0.3, solver.tolerances()).unwrap();
+        let other = problem.evaluate(&mut other, &x, None).unwrap();
+        assert!(slope.for_response(&other.0).is_none());
+    }
 }

@@ -70,14 +70,17 @@ impl StateChange {
         }
     }
 
-    /// The same for a response with another kind of inflow, of which nothing is known.
+    /// The same for a response in an inflow of which nothing is known, where this is the change of another kind; none for a
+    /// response of another blade or on other points of time.
     #[must_use]
-    pub fn in_inflow_of(mut self, response: &RotorSolution) -> Self {
+    pub fn for_response(mut self, response: &RotorSolution) -> Option<Self> {
         let count = response.inflow.parameters().len();
         if self.inflow.len() != count {
             self.inflow = vec![0.0; count];
         }
-        self
+        let fits = self.orbit.nodal.shape() == response.orbit.nodal.shape()
+            && self.accelerations.shape() == response.accelerations.shape();
+        fits.then_some(self)
     }
 
     /// `self *= factor`.
