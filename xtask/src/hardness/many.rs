@@ -16,6 +16,9 @@ use crate::{XtaskError, files};
 const ALONE: usize = 9;
 /// Part of the cases that is there when the sweep is killed.
 const KILLED_AFTER: f64 = 0.1;
+/// Time between two looks at a process, and at its results, of which there are many.
+const LOOK: Duration = Duration::from_millis(20);
+const LOOK_AT_RESULTS: Duration = Duration::from_millis(500);
 /// Most that a case may cost beyond one on a core of its own, and most growth of the memory, MB.
 const MOST_COST: f64 = 0.1;
 const MOST_GROWTH_MB: f64 = 10.0;
@@ -119,11 +122,11 @@ fn children_s() -> Option<f64> {
     Some((ticks(13)? + ticks(14)?) / 100.0)
 }
 
-/// Waits for a child and says what it took since it was started.
+/// Waits for a child, looks at it now and then, and says what it took since it was started.
 fn waited(
     mut child: Child,
     (begun, before_s): (Instant, f64),
-    mut look: impl FnMut(),
+    (every, mut look): (Duration, impl FnMut()),
 ) -> Result<Took, XtaskError> {
     let failed = |source| XtaskError::Start { program: "hhc sweep run".to_owned(), source };
     let status = loop {
@@ -131,7 +134,7 @@ fn waited(
             break status;
         }
         look();
-        std::thread::sleep(Duration::from_millis(20));
+        std::thread::sleep(every);
     };
     if !status.success() {
         let said = format!("ended with {status}");
@@ -173,7 +176,7 @@ pub fn measure(
     for (name, out, count) in [("one.ron", "one", 1), ("few.ron", "few", 1 + ALONE)] {
         write_sweep(&place, name, count)?;
         let begun = now();
-        one.push(waited(place.spawn(&arguments(name, out))?, begun, || {})?);
+        one.push(waited(place.spawn(&arguments(name, out))?, begun, (LOOK, || {}))?);
     }
     let mut many = Many { cases, threads, ..Many::default() };
     many.alone = one[1].less(one[0]).times(1.0 / ALONE as f64);
@@ -194,7 +197,7 @@ pub fn measure(
     let child = child
         .map_err(|source| XtaskError::Start { program: program.display().to_string(), source })?;
     let id = child.id();
-    let took = waited(child, begun, || watch.look(id, results(&place)))?;
+    let took = waited(child, begun, (LOOK_AT_RESULTS, || watch.look(id, results(&place))))?;
     many.memory = watch.memory;
     let after = place.files("out");
     let computed = after.len().saturating_sub(there);
@@ -226,7 +229,7 @@ fn killed(
         place.command(run).env("RAYON_NUM_THREADS", threads.to_string()).spawn().map_err(failed)?;
     let wanted = KILLED_AFTER * cases as f64;
     while (results(place) as f64) < wanted.max(1.0) && child.try_wait().map_err(failed)?.is_none() {
-        std::thread::sleep(Duration::from_millis(20));
+        std::thread::sleep(LOOK);
     }
     child.kill().map_err(failed)?;
     child.wait().map_err(failed)?;
