@@ -124,6 +124,19 @@ enum Chore {
         #[arg(long, default_value_t = 1000)]
         cases: usize,
     },
+    /// Run a sweep of the paper's rotor in Drees's inflow with a kill on its way: cost of a case beside one on a core of its own, memory,
+    /// status and resumption; a missed bar is exit code 3. Twenty minutes on two idle cores
+    ManyCases {
+        /// The program
+        #[arg(long, value_name = "PROGRAM")]
+        program: PathBuf,
+        /// Cases
+        #[arg(short = 'n', long, default_value_t = 1000)]
+        cases: usize,
+        /// Threads
+        #[arg(long, default_value_t = 2)]
+        threads: usize,
+    },
     /// Package all that is published and look whether each package has what it includes
     Packages {
         /// Install hhc from the packages alone, and run it outside of the repository
@@ -405,28 +418,29 @@ fn wake_tables() -> Result<ExitCode, XtaskError> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// Faults of the layers, and the lines of code of every crate.
+fn layer_rule(root: &Path) -> Result<ExitCode, XtaskError> {
+    let members = workspace::members(root)?;
+    let mut faults: Vec<String> = layers::check(&members).iter().map(ToString::to_string).collect();
+    let tree = tidy::Tree::load(root)?;
+    faults.extend(rooms::check(&tree).iter().map(ToString::to_string));
+    let lines = rooms::lines_of_code(&tree);
+    let product = lines.iter().filter(|(member, _)| member.starts_with("crates/"));
+    let all: usize = product.clone().map(|(_, lines)| lines).sum();
+    let by_crate: Vec<String> =
+        product.map(|(member, lines)| format!("{lines:6} lines of code in {member}")).collect();
+    let summary = format!(
+        "{}\n{all:6} in all crates\n{} members, {} faults\n",
+        by_crate.join("\n"),
+        members.len(),
+        faults.len()
+    );
+    Ok(verdict(&faults, &summary))
+}
+
 fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
     match chore {
-        Chore::Layers => {
-            let members = workspace::members(root)?;
-            let mut faults: Vec<String> =
-                layers::check(&members).iter().map(ToString::to_string).collect();
-            let tree = tidy::Tree::load(root)?;
-            faults.extend(rooms::check(&tree).iter().map(ToString::to_string));
-            let lines = rooms::lines_of_code(&tree);
-            let product = lines.iter().filter(|(member, _)| member.starts_with("crates/"));
-            let all: usize = product.clone().map(|(_, lines)| lines).sum();
-            let by_crate: Vec<String> = product
-                .map(|(member, lines)| format!("{lines:6} lines of code in {member}"))
-                .collect();
-            let summary = format!(
-                "{}\n{all:6} in all crates\n{} members, {} faults\n",
-                by_crate.join("\n"),
-                members.len(),
-                faults.len()
-            );
-            Ok(verdict(&faults, &summary))
-        }
+        Chore::Layers => layer_rule(root),
         Chore::Dependencies => {
             let unused = dependencies::unused(&workspace::members(root)?, &tidy::Tree::load(root)?);
             let (packages, unlicensed) = dependencies::licences(root)?;
@@ -471,6 +485,10 @@ fn run(chore: Chore, root: &Path) -> Result<ExitCode, XtaskError> {
         Chore::Fuzz(asked) => fuzz_readers(root, asked),
         Chore::Kills { program, kills, seed } => kill_program(&program, kills, seed),
         Chore::Memory { program, cases } => memory(&program, cases),
+        Chore::ManyCases { program, cases, threads } => {
+            let many = hardness::many::measure(root, &program, cases, threads)?;
+            Ok(compared(&many.all_faults(), &format!("{many}\n")))
+        }
         Chore::Packages { install } => packages(root, install),
         Chore::DataLicences { check } => data_licences(root, check),
         Chore::Refinement => {

@@ -11,7 +11,7 @@
 //! | what is there, missing, damaged, foreign | `status` |
 //! | running what is missing, on all threads | `run` |
 //! | one table of all results | `merge` |
-//! | its page: maps over two axes, parallel coordinates, reduction against power | `page` |
+//! | its page: maps and carpets over two axes, parallel coordinates, reduction against power | `page` |
 //! | the script of an array of Slurm, the part of a task | `shard` |
 //!
 //! No result depends on thread, order or shard: a case is read from its own text and starts from no other.
@@ -39,6 +39,7 @@ pub use shard::{Shard, array_script};
 pub use status::{Status, status};
 pub use store::{Cell, Outcome, State, Store, StoredCase, case_key};
 
+use measured_data::DataError;
 use measured_data::problem::Problems;
 
 /// A case as a runner has read it.
@@ -46,7 +47,7 @@ use measured_data::problem::Problems;
 pub struct ReadCase<C> {
     /// The case printed anew with all its defaults: comments, order and layout of the text are gone.
     pub canonical: String,
-    /// blake3 of every file that the case names, in a fixed order.
+    /// blake3 of every file that the case names, and names of what else the result depends on, in a fixed order.
     pub inputs: Vec<String>,
     /// What the runner needs to run it.
     pub case: C,
@@ -59,6 +60,15 @@ pub struct Found {
     pub columns: Vec<(String, Cell)>,
     /// What a reader should know before using the numbers.
     pub warnings: Vec<String>,
+}
+
+/// Why a case has no numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NoNumbers {
+    /// It has none, in words why: the same case fails the same way, which is its result.
+    Failed(String),
+    /// The place where it runs is at fault, such as a full disk: the sweep ends, and the case stays without a result.
+    Stopped(DataError),
 }
 
 /// What makes numbers of a case text.
@@ -77,11 +87,14 @@ pub trait Runner: Sync {
     /// Every problem of the text, each with its field.
     fn read(&self, text: &str) -> Result<ReadCase<Self::Case>, Problems>;
 
+    /// The unit of a field of a case, empty for a pure number or a word; none for a field that the case does not have.
+    fn unit(&self, case: &Self::Case, field: &str) -> Option<String>;
+
     /// Runs a case.
     ///
     /// # Errors
-    /// In words, why there is no result.
-    fn run(&self, case: Self::Case) -> Result<Found, String>;
+    /// Why there are no numbers.
+    fn run(&self, case: Self::Case) -> Result<Found, NoNumbers>;
 }
 
 /// The example of the crate's README, run as a documentation test.

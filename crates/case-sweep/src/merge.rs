@@ -1,18 +1,23 @@
 //! One table of all results.
 
+use crate::plan::with_unit;
 use crate::status::{Status, status};
 use crate::store::{Cell, Outcome, Store};
 use crate::{Plan, SweepError};
-use serde::{Serialize, Serializer};
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Keys and files that a message names; of more it says how many.
 const NAMED: usize = 5;
 
 /// All results of a sweep, in the order of its cases.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Merged {
     /// Fields of the axes.
     pub axes: Vec<String>,
+    /// Units of the axes, empty for a pure number or a word.
+    #[serde(default)]
+    pub axis_units: Vec<String>,
     /// Names of the columns, with units.
     pub columns: Vec<String>,
     /// One for each case that has a result.
@@ -20,20 +25,20 @@ pub struct Merged {
 }
 
 /// A case with its result.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MergedCase {
     /// Its number, from 1.
     pub case: usize,
     /// Its key.
     pub key: String,
     /// Its value on each axis: a number, or RON.
-    #[serde(serialize_with = "members")]
+    #[serde(serialize_with = "members", deserialize_with = "of_members")]
     pub values: Vec<(String, Cell)>,
     /// Why there are no numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failed: Option<String>,
     /// What was found.
-    #[serde(serialize_with = "members")]
+    #[serde(serialize_with = "members", deserialize_with = "of_members")]
     pub found: Vec<(String, Cell)>,
     /// What a reader should know before using it.
     pub warnings: Vec<String>,
@@ -41,6 +46,27 @@ pub struct MergedCase {
 
 fn members<S: Serializer>(pairs: &[(String, Cell)], to: S) -> Result<S::Ok, S::Error> {
     to.collect_map(pairs.iter().map(|(name, cell)| (name, cell)))
+}
+
+/// Members of an object in their order.
+fn of_members<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, Cell)>, D::Error> {
+    struct Members;
+    impl<'de> Visitor<'de> for Members {
+        type Value = Vec<(String, Cell)>;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("an object of numbers and words")
+        }
+
+        fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+            let mut pairs = Vec::new();
+            while let Some(pair) = map.next_entry()? {
+                pairs.push(pair);
+            }
+            Ok(pairs)
+        }
+    }
+    from.deserialize_map(Members)
 }
 
 /// Merges the results of a plan.
@@ -54,7 +80,8 @@ pub fn merge(plan: &Plan, store: &Store, partial: bool) -> Result<Merged, SweepE
             return Err(SweepError::Incomplete(faults));
         }
     }
-    let mut merged = Merged { axes: plan.fields.clone(), columns: vec![], cases: vec![] };
+    let (axes, axis_units) = (plan.fields.clone(), plan.units.clone());
+    let mut merged = Merged { axes, axis_units, columns: vec![], cases: vec![] };
     for (i, planned) in plan.cases.iter().enumerate() {
         let Some(stored) = store.get(&planned.key).1 else { continue };
         let (found, warnings, failed) = match stored.outcome {
@@ -110,11 +137,18 @@ impl Merged {
         if let Cell::Number(value) = cell { Some(*value) } else { None }
     }
 
+    /// A name with its unit: an axis whose name does not end with its unit has it in brackets behind.
+    pub fn with_unit(&self, name: &str) -> String {
+        let axis = self.axes.iter().position(|axis| axis == name);
+        let unit = axis.and_then(|axis| self.axis_units.get(axis));
+        with_unit(name, unit.map_or("", String::as_str))
+    }
+
     /// The table: number, axes, `failed`, columns, `warnings` (how many) and key; an empty cell has no value.
     pub fn csv(&self) -> String {
         let one = |cell: &str| cell.replace(['\n', '\r'], " ");
         let mut header = vec!["case".to_owned()];
-        header.extend(self.axes.iter().map(|field| one(field)));
+        header.extend(self.axes.iter().map(|field| one(&self.with_unit(field))));
         header.push("failed".to_owned());
         header.extend(self.columns.iter().map(|name| one(name)));
         header.extend(["warnings".to_owned(), "key".to_owned()]);

@@ -1,9 +1,11 @@
-//! The page of a sweep: maps over two axes, parallel coordinates, what reduction costs in power.
+//! The page of a sweep: maps and carpets over two axes, parallel coordinates, what reduction costs in power.
 
 use crate::store::Cell;
 use crate::{Merged, MergedCase, SweepError};
 use maud::{Markup, html};
-use report_page::{Charts, Place3, map_chart, page, parallel_chart, trade_chart};
+use report_page::{
+    Charts, Place3, carpet_chart, fronts_chart, grid, map_chart, page, parallel_chart, trade_chart,
+};
 
 /// What a page shows.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -12,7 +14,8 @@ pub struct PageChoice {
     pub x: Option<String>,
     /// Axis upwards; the next one if left out.
     pub y: Option<String>,
-    /// Columns to show; every reduction of J if empty.
+    /// Columns to show; if empty every reduction of J, the loads at the blade number per rev without control, and every flap
+    /// amplitude.
     pub of: Vec<String>,
     /// Only cases with these values on axes, `FIELD=VALUE`.
     pub at: Vec<String>,
@@ -21,6 +24,16 @@ pub struct PageChoice {
 /// Ends of the names of columns that are compared in the trade.
 const REDUCTION: &str = "reduction_percent";
 const POWER: &str = "actuation_power_W";
+/// End of the names of flap amplitudes, and what follows the name of a load.
+const AMPLITUDE: &str = "flap_amplitude_deg";
+const LOAD: &str = "_nb_per_rev_";
+
+/// Whether a column is shown if none is asked for.
+fn is_usual(name: &str) -> bool {
+    // fx_nb_per_rev_N: under a control the name begins with that
+    let is_load = name.split_once(LOAD).is_some_and(|(load, _)| load.len() == 2);
+    name.ends_with(REDUCTION) || is_load || name.ends_with(AMPLITUDE)
+}
 
 impl Merged {
     /// The HTML page of a sweep, whole in itself.
@@ -30,7 +43,7 @@ impl Merged {
     pub fn page(&self, title: &str, choice: &PageChoice) -> Result<String, SweepError> {
         let cases = self.chosen(&choice.at)?;
         let of = if choice.of.is_empty() {
-            self.columns.iter().filter(|name| name.ends_with(REDUCTION)).cloned().collect()
+            self.columns.iter().filter(|name| is_usual(name)).cloned().collect()
         } else {
             choice.of.clone()
         };
@@ -46,11 +59,14 @@ impl Merged {
             p { (cases.len()) " cases with numbers, " (self.cases.len() - cases.len()) " others of the " (self.cases.len()) }
             @if let (Some(x), Some(y)) = (x, y) {
                 h2 { "Over two axes" }
-                p { "Contours where the cases are a grid; --at FIELD=VALUE takes a slice of one with further axes." }
-                @for name in &of { (map(&mut charts, &cases, [x, y], name)) }
+                p { "Contours and a carpet where the cases are a grid; --at FIELD=VALUE takes a slice of one with further axes." }
+                @for name in &of { (self.maps(&mut charts, &cases, [x, y], name)) }
+            } @else if let Some(x) = x {
+                h2 { "Over one axis" }
+                @for name in &of { (self.curve(&mut charts, &cases, x, name)) }
             }
             h2 { "All axes" }
-            (parallel(&mut charts, &cases, axes.iter().map(|own| own.as_str()).chain(of.iter().map(String::as_str))))
+            (self.parallel(&mut charts, &cases, axes.iter().copied().chain(&of)))
             h2 { "Reduction of J against power" }
             p { "Power of the actuators of one blade. No case has more reduction for less power than those on the line." }
             @for name in self.columns.iter().filter(|name| name.ends_with(REDUCTION)) {
@@ -100,6 +116,59 @@ impl Merged {
         Ok(cases)
     }
 
+    /// A column over two axes: its map, and beside it a carpet where the cases are a grid.
+    fn maps(
+        &self,
+        charts: &mut Charts,
+        cases: &[&MergedCase],
+        [x, y]: [&String; 2],
+        name: &str,
+    ) -> Markup {
+        let place = |case: &&MergedCase| -> Option<Place3> {
+            Some([Self::number(case, x)?, Self::number(case, y)?, Self::number(case, name)?])
+        };
+        let places: Vec<Place3> = cases.iter().filter_map(place).collect();
+        let [x, y] = [x, y].map(|axis| self.with_unit(axis));
+        let map = charts.figure("chart", name, "", &map_chart([&x, &y], &places));
+        let carpet = carpet_chart([&x, &y, name], &places).map(|carpet| {
+            let note = format!("Lines of one {x} and of one {y}; both go to the right.");
+            charts.figure("chart", name, &note, &carpet)
+        });
+        grid("grid", std::iter::once(map).chain(carpet))
+    }
+
+    /// A column over one axis.
+    fn curve(&self, charts: &mut Charts, cases: &[&MergedCase], x: &str, name: &str) -> Markup {
+        let point = |case: &&MergedCase| -> Option<[f64; 2]> {
+            Some([Self::number(case, x)?, Self::number(case, name)?])
+        };
+        let mut points: Vec<[f64; 2]> = cases.iter().filter_map(point).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let plot = fronts_chart([&self.with_unit(x), name], &[(name.to_owned(), points)]);
+        charts.figure("chart", name, "", &plot)
+    }
+
+    fn parallel<'a>(
+        &self,
+        charts: &mut Charts,
+        cases: &[&MergedCase],
+        names: impl Iterator<Item = &'a String>,
+    ) -> Markup {
+        let names: Vec<&String> = names.collect();
+        let row = |case: &&MergedCase| -> Option<Vec<f64>> {
+            names.iter().map(|name| Self::number(case, name)).collect()
+        };
+        let rows: Vec<Vec<f64>> = cases.iter().filter_map(row).collect();
+        let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
+        let columns = names.iter().enumerate().map(|(i, name)| (self.with_unit(name), column(i)));
+        charts.figure(
+            "chart tall",
+            "Parallel coordinates",
+            "Drag along an axis to choose cases.",
+            &parallel_chart(columns.collect()),
+        )
+    }
+
     fn failed(&self) -> Markup {
         let failed = || self.cases.iter().filter_map(|case| Some((case, case.failed.as_ref()?)));
         html! {
@@ -121,34 +190,6 @@ fn spans(cases: &[&MergedCase], axis: &str) -> bool {
     let mut values = cases.iter().map(|case| Merged::number(case, axis));
     let first = values.next().flatten();
     first.is_some() && values.any(|value| value.is_some() && value != first)
-}
-
-fn map(charts: &mut Charts, cases: &[&MergedCase], [x, y]: [&String; 2], name: &str) -> Markup {
-    let place = |case: &&MergedCase| -> Option<Place3> {
-        Some([Merged::number(case, x)?, Merged::number(case, y)?, Merged::number(case, name)?])
-    };
-    let places: Vec<Place3> = cases.iter().filter_map(place).collect();
-    charts.figure("chart", name, "", &map_chart([x, y], &places))
-}
-
-fn parallel<'a>(
-    charts: &mut Charts,
-    cases: &[&MergedCase],
-    names: impl Iterator<Item = &'a str>,
-) -> Markup {
-    let names: Vec<&str> = names.collect();
-    let row = |case: &&MergedCase| -> Option<Vec<f64>> {
-        names.iter().map(|name| Merged::number(case, name)).collect()
-    };
-    let rows: Vec<Vec<f64>> = cases.iter().filter_map(row).collect();
-    let column = |i: usize| rows.iter().map(|row| row[i]).collect::<Vec<f64>>();
-    let columns = names.iter().enumerate().map(|(i, name)| ((*name).to_owned(), column(i)));
-    charts.figure(
-        "chart tall",
-        "Parallel coordinates",
-        "Drag along an axis to choose cases.",
-        &parallel_chart(columns.collect()),
-    )
 }
 
 fn trade(charts: &mut Charts, cases: &[&MergedCase], reduction: &str) -> Markup {
@@ -205,8 +246,25 @@ mod tests {
         let names = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect();
         Merged {
             axes: names(&["a", "b", "m"]),
+            axis_units: names(&["kg", "", ""]),
             columns: names(&["ideal_reduction_percent", "ideal_actuation_power_W"]),
             cases: (0..7).map(case).collect(),
+        }
+    }
+
+    #[test]
+    fn the_usual_columns_are_reductions_loads_without_control_and_flap_amplitudes() {
+        for (name, usual) in [
+            ("ideal_3_per_rev_reduction_percent", true),
+            ("fz_nb_per_rev_N", true),
+            ("mx_nb_per_rev_N_m", true),
+            ("ideal_3_per_rev_fz_nb_per_rev_N", false),
+            ("ideal_3_per_rev_outboard_flap_amplitude_deg", true),
+            ("ideal_3_per_rev_outboard_voltage_amplitude_V", false),
+            ("fz_mean_N", false),
+            ("theta0_deg", false),
+        ] {
+            assert_eq!(is_usual(name), usual, "{name}");
         }
     }
 
@@ -217,6 +275,7 @@ mod tests {
         for part in [
             "S &amp; T",
             "\"contour\"",
+            "Lines of one a [kg] and of one b",
             "parcoords",
             "&lt;why&gt;",
             "6 cases with numbers, 1 others",
@@ -226,6 +285,8 @@ mod tests {
         let choice = PageChoice { at: vec!["b=1".into()], ..PageChoice::default() };
         let text = page(&choice).unwrap();
         assert!(text.contains("3 cases with numbers"));
+        // one axis is left: a curve over it
+        assert!(text.contains("Over one axis") && !text.contains("Lines of one"));
         let named = |of: &str| PageChoice { of: vec![of.into()], ..PageChoice::default() };
         assert!(page(&named("nope")).unwrap_err().contains("nope is no axis (a, b, m)"));
         let at = |at: &str| PageChoice { at: vec![at.into()], ..PageChoice::default() };

@@ -14,6 +14,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Plan {
     /// Fields of the axes.
     pub fields: Vec<String>,
+    /// Their units, empty for a pure number or a word.
+    pub units: Vec<String>,
     /// The cases.
     pub cases: Vec<PlannedCase>,
     /// The base case, canonical.
@@ -42,6 +44,11 @@ impl Plan {
         varied(&self.base, self.fields.iter().zip(values), runner)
     }
 
+    /// Names of the axes, with units.
+    pub fn axis_names(&self) -> Vec<String> {
+        self.fields.iter().zip(&self.units).map(|(field, unit)| with_unit(field, unit)).collect()
+    }
+
     /// The cases of different keys, in order.
     pub fn distinct(&self) -> Vec<&PlannedCase> {
         let mut keys = BTreeSet::new();
@@ -64,14 +71,26 @@ fn varied<'a, R: Runner>(
     Ok(text)
 }
 
-/// Key and values of a case, and why it is refused.
-type Taken = (String, Vec<String>, Option<Problems>);
+/// A field with its unit, unless its name ends with that.
+pub(crate) fn with_unit(field: &str, unit: &str) -> String {
+    let ending: String = unit
+        .chars()
+        .map(|c| if c.is_alphanumeric() { c.to_ascii_lowercase() } else { '_' })
+        .collect();
+    if unit.is_empty() || field.to_ascii_lowercase().ends_with(&format!("_{ending}")) {
+        return field.to_owned();
+    }
+    format!("{field} [{unit}]")
+}
 
-/// What a case text is: read, or refused.
-type Read = Result<(String, Vec<String>), Problems>;
-
-fn read<R: Runner>(runner: &R, text: &str) -> Read {
-    runner.read(text).map(|ReadCase { canonical, inputs, .. }| (canonical, inputs))
+/// A case of a plan that is being made.
+struct Taken {
+    key: String,
+    values: Vec<String>,
+    /// Why it is refused.
+    refused: Option<Problems>,
+    /// Units of the axes that the base case does not have.
+    units: Vec<Option<String>>,
 }
 
 /// Plans a sweep over the canonical text of its base case.
@@ -84,17 +103,25 @@ fn read<R: Runner>(runner: &R, text: &str) -> Read {
 pub fn plan<R: Runner>(file: &SweepFile, base: String, runner: &R) -> Result<Plan, SweepError> {
     let samples = samples(file)?;
     let fields: Vec<String> = file.axes.iter().map(|axis| axis.field.clone()).collect();
-    let empty = Plan { fields, cases: vec![], base };
     // what is wrong with the base case is no fault of an axis
-    read(runner, &empty.base)?;
+    let own = runner.read(&base)?.case;
+    let mut units: Vec<Option<String>> =
+        fields.iter().map(|field| runner.unit(&own, field)).collect();
+    let unknown: Vec<usize> = (0..units.len()).filter(|axis| units[*axis].is_none()).collect();
+    let mut empty = Plan { fields, units: vec![], cases: vec![], base };
     let read_one = |values: &Vec<Value>| {
-        let texts: Vec<String> = values.iter().map(|(text, _)| text.clone()).collect();
-        let text = empty.text(&texts, runner)?;
-        Ok(match read(runner, &text) {
-            Ok((canonical, inputs)) => {
-                (case_key(runner.version(), &canonical, &inputs), texts, None)
+        let values: Vec<String> = values.iter().map(|(text, _)| text.clone()).collect();
+        let text = empty.text(&values, runner)?;
+        Ok(match runner.read(&text) {
+            Ok(ReadCase { canonical, inputs, case }) => {
+                let key = case_key(runner.version(), &canonical, &inputs);
+                let unit = |axis: &usize| runner.unit(&case, &empty.fields[*axis]);
+                Taken { key, values, refused: None, units: unknown.iter().map(unit).collect() }
             }
-            Err(problems) => (case_key(runner.version(), &text, &[]), texts, Some(problems)),
+            Err(problems) => {
+                let key = case_key(runner.version(), &text, &[]);
+                Taken { key, values, refused: Some(problems), units: vec![] }
+            }
         })
     };
     let found: Vec<Result<Taken, usize>> = samples.par_iter().map(read_one).collect();
@@ -111,15 +138,19 @@ pub fn plan<R: Runner>(file: &SweepFile, base: String, runner: &R) -> Result<Pla
                     Fault::Refused { message: format!("{} {message}", axis.field) },
                 );
             }
-            Ok((key, values_of, refused)) => {
-                if let Some(refused) = &refused {
+            Ok(taken) => {
+                if let Some(refused) = &taken.refused {
                     problems.append(alone.faults(file, values, refused));
                 }
-                let refused = refused.map(|problems| problems.to_string());
-                cases.push(PlannedCase { key, values: values_of, refused });
+                for (axis, unit) in unknown.iter().zip(taken.units) {
+                    units[*axis] = units[*axis].take().or(unit);
+                }
+                let refused = taken.refused.map(|problems| problems.to_string());
+                cases.push(PlannedCase { key: taken.key, values: taken.values, refused });
             }
         }
     }
+    empty.units = units.into_iter().map(Option::unwrap_or_default).collect();
     Ok(problems.into_result(Some(Plan { cases, ..empty }))?)
 }
 
@@ -138,7 +169,7 @@ impl<R: Runner> Alone<'_, R> {
         for (i, (axis, (value, place))) in file.axes.iter().zip(values).enumerate() {
             let alone = self.read.entry((i, value.clone())).or_insert_with(|| {
                 let text = varied(self.base, [(&axis.field, value)].into_iter(), self.runner);
-                text.ok().and_then(|text| read(self.runner, &text).err()).unwrap_or_default()
+                text.ok().and_then(|text| self.runner.read(&text).err()).unwrap_or_default()
             });
             for problem in alone.as_slice() {
                 let same = |other: &&Problem| {
@@ -171,4 +202,24 @@ fn fault_of(axis: &crate::Axis, value: &str, problem: &Problem) -> Fault {
         _ => format!("{value} for {}: {field} {}", axis.field, problem.fault),
     };
     Fault::Refused { message }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_says_its_unit_once() {
+        for (field, unit, name) in [
+            ("advance_ratio", "", "advance_ratio"),
+            ("rotor.gj", "m0 Omega^2 R^4", "rotor.gj [m0 Omega^2 R^4]"),
+            ("rotor.radius_m", "m", "rotor.radius_m"),
+            ("rotor.mass_kg_m", "kg/m", "rotor.mass_kg_m"),
+            ("flaps[0].start_r", "R", "flaps[0].start_r"),
+            ("control.amplitude_V", "V", "control.amplitude_V"),
+            ("rotor.term", "m", "rotor.term [m]"),
+        ] {
+            assert_eq!(with_unit(field, unit), name);
+        }
+    }
 }

@@ -1,7 +1,7 @@
 //! Running what is missing, on all threads.
 
 use crate::store::{Outcome, State, Store, StoredCase};
-use crate::{Plan, PlannedCase, ReadCase, Runner, Shard, SweepError};
+use crate::{Found, NoNumbers, Plan, PlannedCase, ReadCase, Runner, Shard, SweepError};
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
@@ -59,7 +59,7 @@ impl std::fmt::Display for Pace {
 /// A case runs on one thread; fewer cases than threads share the threads out. No result depends on it.
 ///
 /// # Errors
-/// A result that cannot be written. Failed cases are results.
+/// A result that cannot be written, and a case that was stopped. Failed cases are results.
 pub fn run<R: Runner>(
     plan: &Plan,
     shard: Shard,
@@ -93,15 +93,13 @@ pub fn run<R: Runner>(
         loop {
             let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
             let one = || run_case(plan, case, runner);
-            let stored = match &pool {
+            let ran = match &pool {
                 Ok(pool) => pool.install(one),
                 Err(_) => one(),
             };
-            if let Err(error) = store.put(&stored) {
-                // the others end after their case
-                next.store(open.len(), Ordering::Relaxed);
-                return Err(error);
-            }
+            let put = ran.and_then(|stored| store.put(&stored).map(|()| stored));
+            // the others end after their case
+            let stored = put.inspect_err(|_| next.store(open.len(), Ordering::Relaxed))?;
             lock(&failed).extend(reason(&case.key, &stored.outcome));
             let mut computed = lock(&computed);
             *computed += 1;
@@ -131,7 +129,11 @@ fn reason(key: &str, outcome: &Outcome) -> Option<(String, String)> {
     }
 }
 
-fn run_case<R: Runner>(plan: &Plan, planned: &PlannedCase, runner: &R) -> StoredCase {
+fn run_case<R: Runner>(
+    plan: &Plan,
+    planned: &PlannedCase,
+    runner: &R,
+) -> Result<StoredCase, SweepError> {
     let version = runner.version().to_owned();
     let text = plan.text(&planned.values, runner).unwrap_or_default();
     let read = match &planned.refused {
@@ -141,13 +143,20 @@ fn run_case<R: Runner>(plan: &Plan, planned: &PlannedCase, runner: &R) -> Stored
     match read {
         Ok(ReadCase { canonical, inputs, case }) => {
             let found = catch_unwind(AssertUnwindSafe(|| runner.run(case)));
-            let found = found.unwrap_or_else(|_| {
-                Err("a bug of the program stopped the case; please report it".to_owned())
-            });
-            StoredCase { version, inputs, case: canonical, outcome: found.into() }
+            let outcome = match found {
+                Ok(Ok(Found { columns, warnings })) => Outcome::Found { columns, warnings },
+                Ok(Err(NoNumbers::Failed(reason))) => Outcome::Failed { reason },
+                Ok(Err(NoNumbers::Stopped(error))) => return Err(error.into()),
+                Err(_) => {
+                    let reason = "a bug of the program stopped the case; please report it";
+                    Outcome::Failed { reason: reason.to_owned() }
+                }
+            };
+            Ok(StoredCase { version, inputs, case: canonical, outcome })
         }
         Err(reason) => {
-            StoredCase { version, inputs: vec![], case: text, outcome: Outcome::Failed { reason } }
+            let outcome = Outcome::Failed { reason };
+            Ok(StoredCase { version, inputs: vec![], case: text, outcome })
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Results on disk: `results/<first two of the key>/<key>`, each whole, with its own hash.
 
-use crate::{Found, SweepError};
+use crate::SweepError;
 use measured_data::{DataError, Source, write_atomic};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
@@ -49,15 +49,6 @@ pub enum Outcome {
         /// Why.
         reason: String,
     },
-}
-
-impl From<Result<Found, String>> for Outcome {
-    fn from(result: Result<Found, String>) -> Self {
-        match result {
-            Ok(Found { columns, warnings }) => Self::Found { columns, warnings },
-            Err(reason) => Self::Failed { reason },
-        }
-    }
 }
 
 /// A stored result: everything needed to reproduce it.
@@ -156,6 +147,22 @@ impl Store {
         (state, stored)
     }
 
+    /// Forgets the result of a key: it is computed again.
+    ///
+    /// # Errors
+    /// That it cannot be removed.
+    pub fn forget(&self, key: &str) -> Result<(), SweepError> {
+        let path = self.path(key);
+        let failed = |error: std::io::Error| DataError::NotWritten {
+            path: path.clone(),
+            reason: error.to_string(),
+        };
+        if path.is_symlink() || path.exists() {
+            std::fs::remove_file(&path).map_err(failed)?;
+        }
+        Ok(())
+    }
+
     /// Writes a result, whole or not at all.
     ///
     /// # Errors
@@ -166,7 +173,7 @@ impl Store {
         let text = stored.text().map_err(|error| failed(error.to_string()))?;
         if path.is_symlink() {
             // else the file that it leads to would be written
-            std::fs::remove_file(&path).map_err(|error| failed(error.to_string()))?;
+            self.forget(&stored.key())?;
         }
         Ok(write_atomic(&path, text.as_bytes())?)
     }

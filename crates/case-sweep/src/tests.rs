@@ -1,11 +1,11 @@
 //! A sweep over a toy whose cases are numbers, from the file to the table.
 
 use crate::{
-    Cell, Found, Plan, ReadCase, Runner, Shard, State, Store, SweepError, merge, plan,
-    read_sweep_file, run, status,
+    Cell, Found, Merged, NoNumbers, Plan, ReadCase, Runner, Shard, State, Store, SweepError, merge,
+    plan, read_sweep_file, run, status,
 };
 use measured_data::problem::{Fault, Problems};
-use measured_data::{Folder, Source, read_ron, ron_text, write_atomic};
+use measured_data::{DataError, Folder, Source, read_ron, ron_text, write_atomic};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -66,10 +66,24 @@ impl Runner for ToyRunner {
         Ok(ReadCase { canonical, inputs: vec!["input".into()], case: toy })
     }
 
-    fn run(&self, toy: Toy) -> Result<Found, String> {
+    fn unit(&self, toy: &Toy, field: &str) -> Option<String> {
+        let unit = match (field, &toy.form) {
+            ("low" | "high", _) => "m0 R",
+            ("count" | "form", _) => "",
+            ("form.edge", Form::Square(_)) => "m",
+            _ => return None,
+        };
+        Some(unit.to_owned())
+    }
+
+    fn run(&self, toy: Toy) -> Result<Found, NoNumbers> {
         self.runs.fetch_add(1, Ordering::Relaxed);
         if toy.count == 13 {
-            return Err("13 is unlucky, \"really\"".into());
+            return Err(NoNumbers::Failed("13 is unlucky, \"really\"".into()));
+        }
+        if toy.count == 17 {
+            let (path, reason) = ("numbers".into(), "the disk is full".into());
+            return Err(NoNumbers::Stopped(DataError::NotWritten { path, reason }));
         }
         assert_ne!(toy.count, 15, "a bug of the toy");
         let value = (toy.low * toy.high).sqrt() / toy.count as f64;
@@ -129,6 +143,12 @@ fn axes_reach_fields_inside_groups() {
     let merged = merge(&plan, &store, false).unwrap();
     let edges: Vec<_> = merged.cases.iter().map(|case| case.found[1].1.clone()).collect();
     assert_eq!(edges, [4.0, 5.0, 4.0, 5.0].map(Cell::from));
+    // a unit that the base case does not know is that of the cases
+    assert_eq!(plan.units, ["", "m"]);
+    assert_eq!(merged.csv().lines().next().unwrap().split(',').nth(2), Some("form.edge [m]"));
+    // what is written is read back
+    let text = serde_json::to_string(&merged).unwrap();
+    assert_eq!(serde_json::from_str::<Merged>(&text).unwrap(), merged);
 }
 
 #[test]
@@ -191,7 +211,7 @@ fn failed_cases_are_results_with_their_reason() {
     assert_eq!((again.computed, again.skipped, again.failed), (0, 12, first.failed));
     let csv = merge(&plan, &store, false).unwrap().csv();
     let lines: Vec<&str> = csv.lines().collect();
-    assert_eq!(lines[0], "case,low,high,count,failed,mean_m,edge_m,warnings,key");
+    assert_eq!(lines[0], "case,low [m0 R],high [m0 R],count,failed,mean_m,edge_m,warnings,key");
     assert!(lines[2].starts_with("2,0.5,1.8,13,\"13 is unlucky, \"\"really\"\"\",,,0,"), "{csv}");
     assert!(lines[3].contains("a bug of the program"), "{csv}");
     assert!(
@@ -200,6 +220,20 @@ fn failed_cases_are_results_with_their_reason() {
     );
     assert!(lines[10].starts_with("10,1.9,2.5,1,,2.179"), "{csv}");
     assert_eq!(status(&store, &plan).failed.len(), 9);
+}
+
+/// A full disk is no property of a case: the sweep ends with it, and the case is run again.
+#[test]
+fn a_case_that_was_stopped_has_no_result() {
+    let plan = swept("(field: \"count\", values: [1, 17])");
+    let place = tempfile::tempdir().unwrap();
+    let store = Store::new(place.path());
+    for _ in 0..2 {
+        let ended = run(&plan, Shard::WHOLE, &store, &ToyRunner::default(), &|_| {});
+        assert!(ended.unwrap_err().to_string().contains("the disk is full"));
+    }
+    let status = status(&store, &plan);
+    assert_eq!(status.missing, [plan.cases[1].key.clone()]);
 }
 
 /// Shards in any order, thread counts, one process: the same bytes.
@@ -246,6 +280,13 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     assert_eq!(store.get(key).0, State::Damaged);
     let again = ran(&plan, "1/1", &store);
     assert_eq!((again.computed, again.damaged), (1, vec![key.clone()]));
+    assert_eq!(Source::read(&path).unwrap().text, text);
+    // one is forgotten, what is not there as well
+    for _ in 0..2 {
+        store.forget(key).unwrap();
+    }
+    assert_eq!(store.get(key).0, State::Missing);
+    assert_eq!(ran(&plan, "1/1", &store).computed, 1);
     assert_eq!(Source::read(&path).unwrap().text, text);
     // a result of another sweep
     ran(&swept("(field: \"low\", values: [0.25])"), "1/1", &store);

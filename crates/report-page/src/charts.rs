@@ -1,7 +1,9 @@
 //! Charts that many pages have, as plotly plots without colours of background and text: the page sets those.
 
-use plotly::common::{Anchor, ColorScale, ColorScalePalette, DashType, Line, Marker, Mode};
-use plotly::common::{Orientation, Title};
+use plotly::common::{
+    Anchor, ColorScale, ColorScalePalette, DashType, HoverInfo, Line, Marker, Mode,
+};
+use plotly::common::{Orientation, Position, Title};
 use plotly::layout::{Axis, BarMode, Legend, Margin};
 use plotly::{Bar, Contour, Layout, Plot, Scatter, Trace};
 use serde::Serialize;
@@ -69,26 +71,43 @@ pub fn pair_chart(title: &str, heads: &[String], sides: [(&str, Vec<f64>); 2]) -
 /// A value at a place of a plane: `[x, y, value]`.
 pub type Place3 = [f64; 3];
 
+/// Values on a whole grid: steps of both axes, and a row of values for each step of the second.
+struct Grid {
+    xs: Vec<f64>,
+    ys: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Grid {
+    /// The grid that the places are, each step of one axis with each of the other and once; none if they are no such grid.
+    fn of(places: &[Place3]) -> Option<Self> {
+        let steps = |i: usize| -> Vec<f64> {
+            let mut values: Vec<f64> = places.iter().map(|place| place[i]).collect();
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            values
+        };
+        let (xs, ys) = (steps(0), steps(1));
+        let at = |x: f64, y: f64| {
+            let same = |place: &&Place3| place[..2] == [x, y];
+            places.iter().find(same).map(|place| place[2])
+        };
+        if xs.len() < 2 || ys.len() < 2 || xs.len() * ys.len() != places.len() {
+            return None;
+        }
+        let row = |&y: &f64| xs.iter().map(|&x| at(x, y)).collect::<Option<Vec<f64>>>();
+        let rows = ys.iter().map(row).collect::<Option<Vec<Vec<f64>>>>()?;
+        Some(Self { xs, ys, rows })
+    }
+}
+
 /// Values over two axes: contours where they stand on a whole grid, each place once, else points in the colour of their
 /// value.
 pub fn map_chart([x_title, y_title]: [&str; 2], places: &[Place3]) -> Plot {
     let column = |i: usize| -> Vec<f64> { places.iter().map(|place| place[i]).collect() };
-    let steps = |mut values: Vec<f64>| {
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-        values
-    };
-    let (xs, ys) = (steps(column(0)), steps(column(1)));
-    let at = |x: f64, y: f64| {
-        let same = |place: &&Place3| place[..2] == [x, y];
-        places.iter().find(same).map(|place| place[2])
-    };
-    let rows: Option<Vec<Vec<f64>>> =
-        ys.iter().map(|&y| xs.iter().map(|&x| at(x, y)).collect()).collect();
-    let is_grid = xs.len() > 1 && ys.len() > 1 && xs.len() * ys.len() == places.len();
     let mut plot = Plot::new();
     let scale = || ColorScale::Palette(ColorScalePalette::Viridis);
-    if let Some(rows) = rows.filter(|_| is_grid) {
+    if let Some(Grid { xs, ys, rows }) = Grid::of(places) {
         plot.add_trace(Contour::new(xs, ys, rows).color_scale(scale()));
     } else {
         let marker = Marker::new().size(9).color_array(column(2)).color_scale(scale());
@@ -97,6 +116,55 @@ pub fn map_chart([x_title, y_title]: [&str; 2], places: &[Place3]) -> Plot {
     }
     plot.set_layout(chart_layout().x_axis(chart_axis(x_title)).y_axis(chart_axis(y_title)));
     plot
+}
+
+/// Way to the right of a carpet over its second axis, over that of the first: the lines cross, and hide each other nowhere.
+const SLANT: f64 = 0.4;
+/// Lines of a carpet of one kind that have their value beside them, at most.
+const LABELS: usize = 8;
+
+/// A carpet: a value upwards, a line for each step of the first axis and one for each step of the second. Both axes go to the
+/// right, the second by less. None where the places are no whole grid.
+pub fn carpet_chart([x_title, y_title, title]: [&str; 3], places: &[Place3]) -> Option<Plot> {
+    let Grid { xs, ys, rows } = Grid::of(places)?;
+    let share = |steps: &[f64], i: usize| {
+        let (first, last) = (steps[0], steps[steps.len() - 1]);
+        (steps[i] - first) / (last - first)
+    };
+    let place = |i: usize, j: usize| (share(&xs, i) + SLANT * share(&ys, j), rows[j][i]);
+    let mut plot = Plot::new();
+    let mut draw =
+        |points: Vec<(usize, usize)>, (name, value): (&str, f64), k: usize, of: usize, colour| {
+            let (x, y): (Vec<f64>, Vec<f64>) = points.iter().map(|&(i, j)| place(i, j)).unzip();
+            let mut label = vec![String::new(); points.len()];
+            if let Some(end) = label.last_mut().filter(|_| k.is_multiple_of(of.div_ceil(LABELS))) {
+                *end = four_digits(value);
+            }
+            let said = points.iter().zip(&y).map(|(&(i, j), value)| {
+                let [x, y, value] = [xs[i], ys[j], *value].map(four_digits);
+                format!("{x_title} {x}<br>{y_title} {y}<br>{value}")
+            });
+            let line = chart_line(&x, &y, name, colour, DashType::Solid).mode(Mode::LinesText);
+            let line = line.text_array(label).text_position(Position::TopRight);
+            let line = line.hover_text_array(said.collect::<Vec<String>>());
+            plot.add_trace(line.hover_info(HoverInfo::Text).legend_group(name).show_legend(k == 0));
+        };
+    let (m, n) = (xs.len(), ys.len());
+    for (i, &x) in xs.iter().enumerate() {
+        draw((0..n).map(|j| (i, j)).collect(), (x_title, x), i, m, COLOURS[1]);
+    }
+    for (j, &y) in ys.iter().enumerate() {
+        draw((0..m).map(|i| (i, j)).collect(), (y_title, y), j, n, COLOURS[2]);
+    }
+    let across = chart_axis("").show_tick_labels(false).show_grid(false).zero_line(false);
+    plot.set_layout(chart_layout().x_axis(across).y_axis(chart_axis(title).zero_line(false)));
+    Some(plot)
+}
+
+/// A number for a label: four digits.
+fn four_digits(value: f64) -> String {
+    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{rounded}")
 }
 
 /// Points over two axes, with the line through some of them that no other point beats.
@@ -180,9 +248,38 @@ mod tests {
         assert!(json(&grid).contains("\"z\":[[1.0,2.0],[3.0,4.0]]"), "{}", json(&grid));
         assert!(!json(&grid[..3]).contains("contour"));
         assert!(!json(&[grid[0], grid[1], grid[2], grid[2]]).contains("contour"));
+        assert!(carpet_chart(["x", "y", "z"], &grid[..3]).is_none());
         let parallel =
             parallel_chart(vec![("a".into(), vec![1.0, 2.0]), ("b".into(), vec![3.0, 4.0])]);
         let text = parallel.to_json();
         assert!(text.contains("parcoords") && text.contains("\"color\":[3.0,4.0]"), "{text}");
+    }
+    /// On a plane every line of a carpet is straight, the crossings are the places, and each line is drawn once.
+    #[test]
+    fn a_carpet_has_a_line_for_each_step() {
+        let plane = |x: f64, y: f64| [x, y, 3.0 * x - y];
+        let places: Vec<Place3> =
+            (0..12).map(|k| plane(0.2 + 0.1 * f64::from(k % 4), f64::from(k / 4))).collect();
+        let plot = carpet_chart(["mu", "gj", "J"], &places).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&plot.to_json()).unwrap();
+        let lines = json["data"].as_array().unwrap();
+        assert_eq!(lines.len(), 4 + 3);
+        let numbers = |line: &serde_json::Value, key: &str| -> Vec<f64> {
+            line[key].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect()
+        };
+        for (k, line) in lines.iter().enumerate() {
+            let (x, y) = (numbers(line, "x"), numbers(line, "y"));
+            assert_eq!(x.len(), if k < 4 { 3 } else { 4 });
+            let slope = |i: usize| (y[i + 1] - y[i]) / (x[i + 1] - x[i]);
+            assert!((1..x.len() - 1).all(|i| (slope(i) - slope(0)).abs() < 1e-9), "{line}");
+            assert!(x.is_sorted(), "both axes go to the right");
+        }
+        // the second line of the first axis meets the third of the second where both have the place
+        let (first, second) = (&lines[1], &lines[4 + 2]);
+        for key in ["x", "y"] {
+            assert!((numbers(first, key)[2] - numbers(second, key)[1]).abs() < 1e-12, "{key}");
+        }
+        assert!((numbers(first, "y")[2] - (3.0 * 0.3 - 2.0)).abs() < 1e-12);
+        assert_eq!(second["text"][3], "2");
     }
 }

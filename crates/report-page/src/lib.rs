@@ -17,8 +17,8 @@ mod section;
 mod text;
 
 pub use charts::{
-    COLOURS, DrawnCurve, NamedPoints, Place3, chart_axis, chart_layout, chart_line, curve_chart,
-    fronts_chart, map_chart, pair_chart, parallel_chart, trade_chart,
+    COLOURS, DrawnCurve, NamedPoints, Place3, carpet_chart, chart_axis, chart_layout, chart_line,
+    curve_chart, fronts_chart, map_chart, pair_chart, parallel_chart, trade_chart,
 };
 pub use maud::Markup;
 pub use page::{Charts, MADE_HERE, body, folded, grid, heading, page, paragraphs, titled};

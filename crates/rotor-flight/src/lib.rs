@@ -45,7 +45,9 @@ pub use pilot::Guidance;
 pub use state_space::state_space_of_case;
 pub use tables::{draws_csv, failures_csv, flight_csv, load_amplitudes, margins_csv};
 pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
-pub use wake_in_time::{FoundInTime, InTimeQuestion, MeanLine, WakeInTimeResult, wake_in_time};
+pub use wake_in_time::{
+    Agreement, FoundInTime, InTimeQuestion, MeanLine, Verdict, WakeInTimeResult, wake_in_time,
+};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -83,25 +83,30 @@ pub enum SimError {
         /// What follows from the rest.
         recomputed: String,
     },
-    /// One advance ratio of several.
-    #[error("advance ratio {advance_ratio}: {source}{}", found_before(.found))]
-    SweepEnded {
-        /// The advance ratio.
-        advance_ratio: f64,
-        /// Advance ratios before it, whose results are stored.
+    /// Some of several advance ratios.
+    #[error("{}{}", failed_at(.failed), stored_at(.found))]
+    SpeedsFailed {
+        /// Advance ratios that failed, and why.
+        failed: Vec<(f64, String)>,
+        /// Advance ratios whose results are stored.
         found: Vec<f64>,
-        /// What went wrong there.
-        source: Box<SimError>,
     },
 }
 
-/// What is said of the advance ratios before the one that failed.
-fn found_before(found: &[f64]) -> String {
+/// What is said of the advance ratios that failed.
+fn failed_at(failed: &[(f64, String)]) -> String {
+    let lines: Vec<String> =
+        failed.iter().map(|(mu, reason)| format!("advance ratio {mu}: {reason}")).collect();
+    lines.join("\n")
+}
+
+/// What is said of those that did not.
+fn stored_at(found: &[f64]) -> String {
     let given: Vec<String> = found.iter().map(f64::to_string).collect();
     match given.len() {
         0 => String::new(),
-        1 => format!("\nthe result at {} before it is stored", given[0]),
-        _ => format!("\nthe results at {} before it are stored", given.join(", ")),
+        1 => format!("\nthe result at {} is stored", given[0]),
+        _ => format!("\nthe results at {} are stored", given.join(", ")),
     }
 }
 
@@ -148,11 +153,11 @@ impl SimError {
 
     fn family(&self) -> Family {
         match self {
-            Self::WakeDiverged { .. } => Family::NumericalFailure,
+            Self::WakeDiverged { .. } | Self::SpeedsFailed { .. } => Family::NumericalFailure,
             Self::NotReproduced { .. } | Self::Sweep(SweepError::Incomplete(_)) => {
                 Family::DataMismatch
             }
-            Self::SweepEnded { source, .. } | Self::InDoubt { source, .. } => source.family(),
+            Self::InDoubt { source, .. } => source.family(),
             Self::Bench(source) => bench_family(source),
             Self::Data(_) | Self::Sweep(_) | Self::Section(_) => Family::RejectedInput,
             Self::Study { source, .. } => study_family(source),

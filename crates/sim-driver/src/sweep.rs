@@ -1,4 +1,4 @@
-//! A case at several advance ratios, each trim started from the last.
+//! A case at several advance ratios, and how each is trimmed.
 
 use crate::SimError;
 use crate::case::{LoadedCase, MeasuredRotor};
@@ -6,7 +6,6 @@ use crate::output::{Printable, Sheet, table};
 use crate::results::Figures;
 use rotor_study::{TrimmedRotor, WakeStatus};
 use serde::Serialize;
-use std::fmt::Write as _;
 use trim::TrimSolution;
 
 /// Largest difference of advance ratios that are the same.
@@ -112,29 +111,6 @@ impl Printable for SweepResult {
         }
         sheet.finish()
     }
-}
-
-/// The same as CSV, every digit kept; `wake` says how a free wake ended.
-pub fn sweep_csv(sweep: &SweepResult) -> String {
-    let mut text = String::from(
-        "advance_ratio,theta0_deg,theta1c_deg,theta1s_deg,alpha_s_deg,phi_s_deg,induced_inflow,fx,fy,fz,mx,my,mz,least_damping_ratio,iterations,shaft_power_W,wake\n",
-    );
-    for row in &sweep.rows {
-        let t = &row.result.trim;
-        let least = row.result.stability.least_damped.as_ref();
-        let angles = [t.theta0_deg, t.theta1c_deg, t.theta1s_deg, t.alpha_s_deg, t.phi_s_deg];
-        let numbers = std::iter::once(row.advance_ratio)
-            .chain(angles)
-            .chain([t.induced_inflow])
-            .chain(row.result.baseline.hub_nb_per_rev.amplitudes())
-            .chain([least.map_or(f64::NAN, |m| m.damping_ratio)]);
-        let power = row.result.mean_loads.as_ref().map_or(f64::NAN, |loads| loads.shaft_power_watt);
-        let wake = row.result.wake.map_or("", WakeStatus::name);
-        let cells: Vec<String> = numbers.map(|n| format!("{n:e}")).collect();
-        // writing to a string cannot fail
-        let _ = writeln!(text, "{},{},{power:e},{wake}", cells.join(","), t.iterations);
-    }
-    text
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
 //! | the parts of an input by its form | `parts` |
 //! | packed inputs, changed inside | `container` |
 //! | the readers and their valid inputs | `targets` |
+//! | valid inputs that no fixture holds | `seeds` |
 //!
 //! Inputs come in batches. A batch follows from the seed, the reader and its number alone, so a run can be stopped, resumed
 //! and spread over threads, and a panic can be had again. Readers share the time evenly.
@@ -15,6 +16,7 @@ mod bytes;
 mod container;
 mod mutate;
 mod parts;
+mod seeds;
 mod targets;
 
 use std::fmt;

@@ -2,17 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use bench_study::stored::read_actuator;
+use bench_study::stored::{StoredActuator, read_actuator};
 use case_sweep::{StoredCase, read_sweep_file};
 use rotor_gap::read_table;
+use sim_driver::actuator_use::used;
 use sim_driver::case::{load_case, read_case};
 use sim_driver::files::{Folder, Source, read_airfoil, read_dataset};
 use sim_driver::import::{ColumnOptions, ImportRequest, SourceKind, import};
 use sim_driver::results::{StoredResult, figures};
 
 use super::bytes::Form;
+use super::seeds;
 use crate::XtaskError;
 use crate::files::{in_folder, read, read_bytes, write_atomically};
+
+/// Whether the actuator of a file takes a record.
+type Use = fn([&Path; 2]) -> bool;
 
 /// Whether a reader takes an input.
 type Read = Box<dyn Fn(&[u8]) -> bool>;
@@ -66,8 +71,9 @@ const TABLE: [(&str, &str); 4] = [
 const ROWS: &str =
     "advance_ratio,rotor.gj,inflow.model\n0.2,0.005,Drees\n0.3,0.006,\"FreeWake(preset: Fast)\"\n";
 
-/// Most bytes of an input: a part of a long file is as good.
+/// Most bytes of an input, and of a record that goes with it: a part of a long file is as good.
 const MOST_BYTES: usize = 40_000;
+const MOST_RECORD_BYTES: usize = 2_000;
 
 fn text(bytes: &[u8]) -> Source {
     Source { name: "input".to_owned(), text: String::from_utf8_lossy(bytes).into_owned() }
@@ -97,6 +103,7 @@ fn on_disk(path: PathBuf, read: impl Fn() -> bool + 'static) -> Read {
 /// All readers; those of files have a folder below `place`.
 pub(super) fn targets(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
     let mut targets = of_texts(root)?;
+    targets.extend(of_use(place)?);
     targets.extend(of_folders(root, place)?);
     targets.extend(of_imports(&root.join("fixtures"), place)?);
     Ok(targets)
@@ -142,12 +149,14 @@ fn of_texts(root: &Path) -> Result<Vec<Target>, XtaskError> {
             reader: "stored case",
             form: Form::Nested,
             valid: vec![stored.to_vec()],
-            // the hash is made to fit, or the rest would never be read
+            // hash and key are made to fit, or the rest would never be read
             read: Box::new(|bytes| {
                 let rest = text(bytes).text;
-                let hash = blake3::hash(format!("{{{}", rest.trim_end_matches('\n')).as_bytes());
-                let whole = format!("{{\"hash\":\"{}\",{rest}", hash.to_hex());
-                StoredCase::of(&whole, "no key").is_some()
+                let object = format!("{{{}", rest.trim_end_matches('\n'));
+                let stored = serde_json::from_str::<StoredCase>(&object);
+                let key = stored.map_or_else(|_| "no key".to_owned(), |stored| stored.key());
+                let hash = blake3::hash(object.as_bytes()).to_hex();
+                StoredCase::of(&format!("{{\"hash\":\"{hash}\",{rest}"), &key).is_some()
             }),
         },
         Target {
@@ -177,6 +186,41 @@ fn of_texts(root: &Path) -> Result<Vec<Target>, XtaskError> {
             read: Box::new(|bytes| read_actuator(&text(bytes)).is_ok()),
         },
     ])
+}
+
+/// The readers of what a case and an actuator are given beside them.
+fn of_use(place: &Path) -> Result<Vec<Target>, XtaskError> {
+    let folder = place.join("t_file");
+    let (case, cases) = (text(seeds::T_CASE.as_bytes()), Folder::Disk(folder.clone()));
+    write_atomically(&folder.join(seeds::T_FILE), "")?;
+    let mut targets = vec![Target {
+        reader: "T file",
+        form: Form::Nested,
+        valid: seeds::t_files(),
+        read: on_disk(folder.join(seeds::T_FILE), move || read_case(&case, &cases).is_ok()),
+    }];
+    let actuator = place.join("use/plays.ron");
+    write_atomically(&actuator, seeds::PLAYS)?;
+    let measured = [("command_V", 60.0), ("displacement_um", 80.0)];
+    for (reader, valid, of) in [
+        (
+            "predict CSV",
+            [&measured[..1], &measured[..]],
+            (|files| used(files, StoredActuator::predicted).is_ok()) as Use,
+        ),
+        ("invert CSV", [&measured[1..], &[("flap_deg", 2.0)][..]], |files| {
+            used(files, StoredActuator::inverted).is_ok()
+        }),
+    ] {
+        let (own, actuator) = (place.join("use").join(reader.replace(' ', "_")), actuator.clone());
+        targets.push(Target {
+            reader,
+            form: Form::Table,
+            valid: valid.map(seeds::record).to_vec(),
+            read: on_disk(own.clone(), move || of([&actuator, &own])),
+        });
+    }
+    Ok(targets)
 }
 
 /// The readers of folders: one file of each is changed.
@@ -297,10 +341,10 @@ fn copy(from: &Path, to: &Path, own: &str) -> Result<(), XtaskError> {
     }
     for entry in std::fs::read_dir(from).map_err(failed)?.flatten() {
         let name = entry.file_name();
-        // long records are left out: the dataset then names what is not there
-        if entry.metadata().is_ok_and(|found| found.len() < 30_000) {
-            std::fs::copy(entry.path(), to.join(name)).map_err(failed)?;
-        }
+        // of long records the start
+        let is_long = entry.metadata().is_ok_and(|found| found.len() >= 30_000);
+        let most = if is_long { MOST_RECORD_BYTES } else { usize::MAX };
+        std::fs::write(to.join(name), start_of(&entry.path(), most)?).map_err(failed)?;
     }
     Ok(())
 }

@@ -57,6 +57,7 @@ impl Victim<'_> {
     /// and every file must be one of an undisturbed run.
     fn kill(&mut self, random: &mut ChaCha8Rng) -> Result<(), XtaskError> {
         for _ in 0..ATTEMPTS {
+            let unfinished = self.place.unfinished("out");
             let mut child = self.place.spawn(self.arguments)?;
             let moment_s = self.found.undisturbed_s * random.random_range(0.0..1.0);
             std::thread::sleep(Duration::from_secs_f64(moment_s));
@@ -83,6 +84,7 @@ impl Victim<'_> {
             }
             self.found.kills += 1;
             self.found.whole_files += now.len();
+            self.found.unfinished += self.place.unfinished("out").saturating_sub(unfinished);
             return Ok(());
         }
         self.found.faults.push(format!("{}: no kill met the program running", self.found.what));
@@ -98,7 +100,6 @@ impl Victim<'_> {
                 .faults
                 .push(format!("{what} run again: {name} differs from an undisturbed run"));
         }
-        self.found.unfinished += self.place.unfinished("out");
     }
 }
 

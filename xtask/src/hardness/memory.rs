@@ -58,6 +58,33 @@ fn field_mb(status: &str, field: &str) -> Option<f64> {
     line.split_whitespace().next()?.parse::<f64>().ok().map(|kb| kb / 1024.0)
 }
 
+/// Looks at the memory of a process while it computes the cases of a sweep.
+pub(super) struct Watch {
+    /// Results that were there before it began.
+    before: usize,
+    pub(super) memory: Memory,
+}
+
+impl Watch {
+    /// A watch over a sweep of which some results are there.
+    pub(super) fn new(cases: usize, before: usize) -> Self {
+        let memory = Memory { cases: cases - before, tenths_mb: vec![None; 10], peak_mb: 0.0 };
+        Self { before, memory }
+    }
+
+    /// Looks at a process while so many results are there.
+    pub(super) fn look(&mut self, process: u32, there: usize) {
+        let text = files::read(Path::new(&format!("/proc/{process}/status"))).unwrap_or_default();
+        let memory = &mut self.memory;
+        if let Some(mb) = field_mb(&text, "VmRSS") {
+            let done = there.saturating_sub(self.before);
+            let tenth = &mut memory.tenths_mb[(10 * done / memory.cases.max(1)).min(9)];
+            *tenth = Some(tenth.map_or(mb, |before| before.max(mb)));
+        }
+        memory.peak_mb = field_mb(&text, "VmHWM").unwrap_or_default().max(memory.peak_mb);
+    }
+}
+
 /// Runs a sweep of small cases on one thread and looks at the memory of the process.
 ///
 /// # Errors
@@ -69,31 +96,24 @@ pub fn measure(program: &Path, cases: usize) -> Result<Memory, XtaskError> {
         &format!("(base: \"case.ron\", axes: [(field: \"rotor.gj\", from: 0.005, to: 0.007, count: {cases})])"),
     )?;
     let mut child = place.spawn(&["sweep", "run", "sweep.ron", "--out", "out"])?;
-    let status = format!("/proc/{}/status", child.id());
-    let mut memory = Memory { cases, tenths_mb: vec![None; 10], peak_mb: 0.0 };
+    let mut watch = Watch::new(cases, 0);
     let failed = |source| XtaskError::Start { program: "hhc sweep run".to_owned(), source };
     let ended = loop {
         if let Some(ended) = child.try_wait().map_err(failed)? {
             break ended;
         }
-        let text = files::read(Path::new(&status)).unwrap_or_default();
-        let done = results(&place);
-        if let Some(mb) = field_mb(&text, "VmRSS") {
-            let tenth = &mut memory.tenths_mb[(10 * done / cases.max(1)).min(9)];
-            *tenth = Some(tenth.map_or(mb, |before| before.max(mb)));
-        }
-        memory.peak_mb = field_mb(&text, "VmHWM").unwrap_or_default().max(memory.peak_mb);
+        watch.look(child.id(), results(&place));
         std::thread::sleep(Duration::from_millis(50));
     };
     if !ended.success() {
         let said = format!("ended with {ended}");
         return Err(XtaskError::Refused { program: "hhc sweep run".to_owned(), said });
     }
-    Ok(memory)
+    Ok(watch.memory)
 }
 
 /// Results that are there.
-fn results(place: &Place) -> usize {
+pub(super) fn results(place: &Place) -> usize {
     let folders = files::in_folder(&place.path().join("out/results")).unwrap_or_default();
     folders.iter().map(|folder| files::in_folder(folder).map_or(0, |inside| inside.len())).sum()
 }

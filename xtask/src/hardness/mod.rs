@@ -6,8 +6,10 @@
 //! | kills of a sweep and of a study | [`kills`] |
 //! | disks without space, folders that take no file | [`disks`] |
 //! | memory over many cases | [`memory`] |
+//! | many cases of the paper's rotor: cost, memory, a kill | [`many`] |
 
 pub mod disks;
 pub mod kills;
+pub mod many;
 pub mod memory;
 mod place;

@@ -1,7 +1,8 @@
 //! Packages: complete manifests, and files that are inside.
 //!
 //! `cargo package` makes them, all at once, because one needs the other. What it does not see is looked for in the
-//! unpacked packages: a source that includes a file from outside of its package does not compile anywhere else.
+//! unpacked packages: a source that includes a file from outside of its package does not compile anywhere else, and the
+//! text of the licence goes with every package.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -168,6 +169,26 @@ pub fn outside(package: &Path) -> Result<Vec<Outside>, XtaskError> {
     Ok(found)
 }
 
+/// Texts of the licence, of the repository and of every package.
+const LICENCES: [&str; 2] = ["LICENSE-MIT", "LICENSE-APACHE"];
+
+/// The texts of the licence that a package lacks, or has otherwise than the repository.
+///
+/// # Errors
+/// [`XtaskError::Read`] if the repository has none.
+pub fn licences(root: &Path, package: &Path) -> Result<Vec<String>, XtaskError> {
+    let mut faults = Vec::new();
+    for name in LICENCES {
+        let text = files::read(&root.join(name))?;
+        let own = files::read(&package.join(name)).ok();
+        if own.as_ref() != Some(&text) {
+            let what = if own.is_none() { "is not there" } else { "is not that of the repository" };
+            faults.push(format!("{name} {what}: `ln -s ../../{name}` in the folder of the crate"));
+        }
+    }
+    Ok(faults)
+}
+
 /// What became of the packages.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Packed {
@@ -214,6 +235,8 @@ pub fn check(root: &Path, target: &Path, install: bool) -> Result<Packed, XtaskE
         let package = target.join("package").join(format!("{name}.crate"));
         packed.bytes += std::fs::metadata(&package).map_or(0, |found| found.len());
         said(Command::new("tar").arg("-xzf").arg(&package).arg("-C").arg(&unpacked))?;
+        let own = licences(root, &unpacked.join(&name))?;
+        packed.faults.extend(own.iter().map(|fault| format!("{name}: {fault}")));
         for Outside { source, line, included } in outside(&unpacked.join(&name))? {
             packed.faults.push(format!(
                 "{name}: {source}:{line} includes {included}, which is not in the package: move it into the crate"

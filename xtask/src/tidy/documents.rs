@@ -1,6 +1,6 @@
 //! Rules for the documents.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Finding, Tree};
 use crate::layers::Member;
@@ -68,25 +68,73 @@ pub fn changelog(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// Every relative link in a Markdown file leads to a file or folder of the tree.
+/// Every relative link in a Markdown file leads to a file or folder of the tree, and its `#` part to a heading of a page.
 pub fn links(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
+    let pages: BTreeMap<&str, BTreeSet<String>> =
+        tree.ending_in(".md").map(|file| (file.path.as_str(), anchors(&file.text))).collect();
     for file in tree.ending_in(".md") {
-        let mut code = false;
-        for (index, line) in file.text.lines().enumerate() {
-            if line.trim_start().starts_with("```") {
-                code = !code;
-            }
-            for target in link_targets(line).filter(|_| !code) {
-                let resolved = resolve(&file.path, target);
-                if !resolved.is_empty() && !tree.paths.contains(&resolved) {
-                    let fault = format!("link to `{target}` leads nowhere");
+        for (index, line) in prose(&file.text) {
+            for (target, anchor) in links_in(line) {
+                let resolved = match target {
+                    "" => file.path.clone(),
+                    _ => resolve(&file.path, target),
+                };
+                let mut fault = |fault: String| {
                     findings.push(Finding::at_line(&file.path, index + 1, fault));
+                };
+                if !resolved.is_empty() && !tree.paths.contains(&resolved) {
+                    fault(format!("link to `{target}` leads nowhere"));
+                }
+                let there = pages.get(resolved.as_str());
+                if let (Some(anchor), Some(there)) = (anchor, there)
+                    && !there.contains(anchor)
+                {
+                    fault(format!("`#{anchor}` is no heading of {resolved}"));
                 }
             }
         }
     }
     findings
+}
+
+/// The lines of a Markdown text outside of code blocks, with their numbers from 0.
+fn prose(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let mut code = false;
+    text.lines().enumerate().filter(move |(_, line)| {
+        let is_fence = line.trim_start().starts_with("```");
+        code ^= is_fence;
+        !code && !is_fence
+    })
+}
+
+/// What the headings of a page are linked to by, as mdBook names them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for (_, line) in prose(text) {
+        let heading = line.trim_start_matches('#');
+        let Some(heading) = heading.strip_prefix(' ').filter(|_| line.starts_with('#')) else {
+            continue;
+        };
+        // of a link its text
+        let shown: String = heading
+            .split("](")
+            .enumerate()
+            .map(|(k, part)| if k == 0 { part } else { part.split_once(')').map_or("", |p| p.1) })
+            .collect();
+        let kept = shown.trim().chars().filter_map(|c| match c {
+            _ if c.is_whitespace() => Some('-'),
+            _ if c.is_alphanumeric() || c == '_' || c == '-' => Some(c),
+            _ => None,
+        });
+        let name: String = kept.collect::<String>().to_lowercase();
+        // the second of a name has a number behind it
+        let numbered = (1..=found.len()).map(|k| format!("{name}-{k}"));
+        let mut names = std::iter::once(name.clone()).chain(numbered);
+        let free = names.find(|name| !found.contains(name));
+        found.extend(free);
+    }
+    found
 }
 
 /// Every path in back ticks that begins at a folder of the root leads to a file or folder of the tree.
@@ -134,13 +182,17 @@ pub fn long_rows(tree: &Tree) -> Vec<Finding> {
     findings
 }
 
-/// Targets of the relative links `[text](target)` in a line, without their `#` part.
-fn link_targets(line: &str) -> impl Iterator<Item = &str> {
+/// The relative links `[text](target#anchor)` in a line; the target is empty for a place of the page itself.
+fn links_in(line: &str) -> impl Iterator<Item = (&str, Option<&str>)> {
     line.split("](").skip(1).filter_map(|rest| {
         let target = rest.split([')', ' ']).next()?;
-        let target = target.split('#').next()?;
         let outside = target.contains("://") || target.starts_with("mailto:");
-        (!target.is_empty() && !outside).then_some(target)
+        let (target, anchor) = match target.split_once('#') {
+            Some((target, anchor)) => (target, Some(anchor)),
+            None => (target, None),
+        };
+        let is_link = !(target.is_empty() && anchor.is_none());
+        (is_link && !outside).then_some((target, anchor))
     })
 }
 
@@ -168,7 +220,7 @@ pub fn summary(tree: &Tree) -> Vec<Finding> {
         return Vec::new();
     };
     let listed: Vec<String> =
-        text.lines().flat_map(link_targets).map(|target| resolve(path, target)).collect();
+        text.lines().flat_map(links_in).map(|(target, _)| resolve(path, target)).collect();
     tree.ending_in(".md")
         .map(|file| file.path.as_str())
         .filter(|page| page.starts_with("docs/src/") && *page != path)

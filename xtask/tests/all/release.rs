@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use xtask::release::packages::{Manifest, Needed, included, manifests, outside};
+use xtask::release::packages::{Manifest, Needed, included, licences, manifests, outside};
 use xtask::release::{data_licences, model_version};
 use xtask::{files, workspace};
 
@@ -101,7 +101,33 @@ fn the_manifests_are_complete() {
         let folder = Path::new(&member.manifest_path).parent().unwrap();
         let folder = folder.strip_prefix(&root).unwrap().display().to_string();
         assert_eq!(member.faults(&format!("{folder}/")), Vec::<String>::new());
+        if member.is_published() {
+            assert_eq!(
+                licences(&root, &root.join(&folder)).unwrap(),
+                Vec::<String>::new(),
+                "{folder}"
+            );
+        }
     }
+}
+
+/// The text of the licence is in every package, and is that of the repository.
+#[test]
+fn a_package_without_the_text_of_its_licence_is_a_fault() {
+    let place = tempfile::tempdir().unwrap();
+    let (root, package) = (place.path(), place.path().join("package"));
+    std::fs::create_dir_all(&package).unwrap();
+    for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        std::fs::write(root.join(name), name).unwrap();
+    }
+    assert_eq!(licences(root, &package).unwrap().len(), 2, "neither is there");
+    for name in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        std::fs::write(package.join(name), name).unwrap();
+    }
+    assert!(licences(root, &package).unwrap().is_empty());
+    std::fs::write(package.join("LICENSE-MIT"), "LICENSE").unwrap();
+    let said = licences(root, &package).unwrap();
+    assert!(said.len() == 1 && said[0].contains("LICENSE-MIT is not that of"), "{said:?}");
 }
 
 #[test]

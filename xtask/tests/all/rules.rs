@@ -245,7 +245,7 @@ fn breaches_in_documents_are_found() {
 #[test]
 fn dead_links_and_lost_pages_are_found() {
     let files = [
-        ("docs/src/SUMMARY.md", "[A](a.md)\n[Licence](../../LICENSE)\n"),
+        ("docs/src/SUMMARY.md", "# A\n[A](a.md)\n[Licence](../../LICENSE)\n"),
         (
             "docs/src/a.md",
             "[out](https://example.org) [in](SUMMARY.md#a) `x`](b)\n```\n[no](c.md)\n```\n",
@@ -256,6 +256,30 @@ fn dead_links_and_lost_pages_are_found() {
     assert_eq!(tidy::summary(&Tree::of(&files)), []);
     let lost = [files[0], files[1], files[2], ("docs/src/lost.md", "")];
     one(&tidy::summary(&Tree::of(&lost)), "nobody will find it");
+}
+
+/// A link to a heading, here or on another page, by the name that the book gives it.
+#[test]
+fn links_lead_to_headings_that_are_there() {
+    let page = "# How `x` is [checked](b.md)\n```text\n# no heading\n```\n## Twice\n## Twice\n";
+    let findings = |link: &str| {
+        let first = format!("{page}[l]({link})\n");
+        tidy::links(&Tree::of(&[
+            ("docs/src/a.md", &first),
+            ("docs/src/b.md", "## A_b, c-d (e)!\n"),
+        ]))
+    };
+    for link in ["#how-x-is-checked", "a.md#twice", "#twice-1", "b.md#a_b-c-d-e", "b.md"] {
+        assert_eq!(findings(link), [], "{link}");
+    }
+    for (link, said) in [
+        ("#no-heading", "`#no-heading` is no heading of docs/src/a.md"),
+        ("b.md#how-x-is-checked", "is no heading of docs/src/b.md"),
+        ("#twice-2", "no heading"),
+        ("c.md#a", "`c.md` leads nowhere"),
+    ] {
+        one(&findings(link), said);
+    }
 }
 
 #[test]

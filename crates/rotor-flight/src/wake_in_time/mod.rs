@@ -46,6 +46,70 @@ impl MeanLine {
     }
 }
 
+/// Difference from the periodic wake up to which the march agrees with it, percent.
+pub(crate) const AGREES_PERCENT: f64 = 1.0;
+
+/// How a march compares with the periodic wake that it began with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Loads and mean inflow are within 1 %.
+    Agrees,
+    /// They are not, by more than the interval.
+    Differs,
+    /// The interval holds both.
+    Open,
+}
+
+/// How far the means are from the periodic wake that the march began with.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Agreement {
+    /// Mean vector of the hub loads at the blade number per rev off that of the periodic wake, over its length, percent.
+    pub loads_off_percent: f64,
+    /// Half of its 95 % interval, percent; none from a single revolution.
+    pub loads_half_width_95_percent: Option<f64>,
+    /// Mean inflow off that of the periodic wake, percent.
+    pub inflow_off_percent: f64,
+    /// What follows.
+    pub verdict: Verdict,
+}
+
+impl Agreement {
+    /// Of the means of loads and inflow with those of the periodic wake.
+    fn of(loads: &[Interval], inflow: &Interval, periodic: (&[f64], f64)) -> Option<Self> {
+        let length = |of: &mut dyn Iterator<Item = f64>| of.map(|v| v * v).sum::<f64>().sqrt();
+        let whole = length(&mut periodic.0.iter().copied());
+        if !(whole > 0.0 && periodic.1 != 0.0) {
+            return None;
+        }
+        let apart = length(&mut loads.iter().zip(periodic.0).map(|(of, value)| of.mean - value));
+        let half = length(&mut loads.iter().map(|of| of.half_width_95));
+        let [off, half] = [apart, half].map(|of| 100.0 * of / whole);
+        let inflow_off_percent = 100.0 * (inflow.mean / periodic.1 - 1.0).abs();
+        let inflow_half = 100.0 * (inflow.half_width_95 / periodic.1).abs();
+        let within = |off: f64, half: f64| {
+            if off <= AGREES_PERCENT {
+                Verdict::Agrees
+            } else if off - half > AGREES_PERCENT {
+                Verdict::Differs
+            } else {
+                Verdict::Open
+            }
+        };
+        let verdict = match (within(off, half), within(inflow_off_percent, inflow_half)) {
+            (Verdict::Differs, _) | (_, Verdict::Differs) => Verdict::Differs,
+            (Verdict::Agrees, Verdict::Agrees) => Verdict::Agrees,
+            _ => Verdict::Open,
+        };
+        Some(Self {
+            loads_off_percent: off,
+            loads_half_width_95_percent: half.is_finite().then_some(half),
+            inflow_off_percent,
+            verdict,
+        })
+    }
+}
+
 /// What a march found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WakeInTimeResult {
@@ -61,6 +125,9 @@ pub struct WakeInTimeResult {
     pub residual: Option<f64>,
     /// Whether the periodic wake that it began with had settled.
     pub periodic_settled: bool,
+    /// How the means compare with it; none of one that had not settled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub agreement: Option<Agreement>,
     /// Controls and attitude that the means ask for, deg; none for prescribed controls.
     pub controls_deg: Vec<MeanLine>,
     /// Mean inflow over the disk, tip speed, and over Glauert's.
@@ -178,7 +245,8 @@ fn result_of(case: &Case, trimmed: &TrimmedRotor, found: &SteadyInTime) -> WakeI
         let before = of_periodic.and_then(|g| shown(mean / g));
         inflow.push(MeanLine::new(name, &found.mean_inflow, 1.0 / g, before));
     }
-    let hub = HubLoads::from_parts(periodic.rotor.hub.harmonic(case.rotor.blades)).amplitudes();
+    let at_blade_number = periodic.rotor.hub.harmonic(case.rotor.blades);
+    let hub = HubLoads::from_parts(at_blade_number).amplitudes();
     let loads = found.amplitudes.iter().zip(HubLoads::NAMES).zip(hub);
     let amplitudes: Vec<MeanLine> = loads
         .map(|((of, name), periodic)| MeanLine::new(name.to_uppercase(), of, 1.0, shown(periodic)))
@@ -198,6 +266,12 @@ fn result_of(case: &Case, trimmed: &TrimmedRotor, found: &SteadyInTime) -> WakeI
         balanced: found.balanced,
         residual,
         periodic_settled,
+        agreement: periodic_settled
+            .then(|| {
+                let of_periodic = (&at_blade_number[..], mean);
+                Agreement::of(&found.at_blade_number, &found.mean_inflow, of_periodic)
+            })
+            .flatten(),
         warnings: warnings(case, trimmed, found, (&amplitudes, &repeating), periodic_settled),
         controls_deg,
         inflow,
@@ -261,4 +335,32 @@ fn warnings(
         );
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_march_agrees_differs_or_cannot_tell() {
+        let of = |mean: f64, half_width_95: f64| Interval { mean, half_width_95, rms: 0.0 };
+        let verdict = |loads: [Interval; 2], inflow: Interval| {
+            let found = Agreement::of(&loads, &inflow, (&[3.0, 4.0], 0.02)).unwrap();
+            (found.verdict, found.loads_off_percent)
+        };
+        let calm = of(0.0201, 0.0);
+        // 0.8 % of the length 5, and 2 % of it
+        let (said, off) = verdict([of(3.04, 0.01), of(4.0, 0.01)], calm);
+        assert!(said == Verdict::Agrees && (off - 0.8).abs() < 1e-9, "{said:?} {off}");
+        assert_eq!(verdict([of(3.1, 0.01), of(4.0, 0.01)], calm).0, Verdict::Differs);
+        assert_eq!(verdict([of(3.1, 0.1), of(4.0, 0.1)], calm).0, Verdict::Open);
+        assert_eq!(verdict([of(3.0, 0.0), of(4.0, 0.0)], of(0.021, 0.0)).0, Verdict::Differs);
+        assert_eq!(verdict([of(3.0, 0.0), of(4.0, 0.0)], of(0.021, 0.001)).0, Verdict::Open);
+        // one revolution has no interval
+        assert_eq!(
+            verdict([of(3.1, f64::INFINITY), of(4.0, f64::INFINITY)], calm).0,
+            Verdict::Open
+        );
+        assert_eq!(Agreement::of(&[of(0.0, 0.0)], &calm, (&[0.0], 0.02)), None);
+    }
 }

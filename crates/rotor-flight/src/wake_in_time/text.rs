@@ -1,6 +1,6 @@
 //! A rotor and its wake in time as a table and as CSV.
 
-use crate::wake_in_time::{MeanLine, WakeInTimeResult};
+use super::{AGREES_PERCENT, Agreement, MeanLine, Verdict, WakeInTimeResult};
 use report_page::{Column, Sheet, table_of};
 use rotor_study::HubLoads;
 use trim::RevolutionInTime;
@@ -24,6 +24,9 @@ pub fn wake_in_time_text(found: &WakeInTimeResult) -> String {
         found.steps[1],
         if found.periodic_settled { "settled" } else { "not settled" }
     ));
+    if let Some(agreement) = &found.agreement {
+        sheet.line(agreement_text(agreement));
+    }
     sheet.line("");
     let lines: Vec<&MeanLine> = found.controls_deg.iter().chain(&found.inflow).collect();
     sheet.block(&mean_table(&lines, &[]));
@@ -34,6 +37,27 @@ pub fn wake_in_time_text(found: &WakeInTimeResult) -> String {
     let loads: Vec<&MeanLine> = found.amplitudes.iter().collect();
     sheet.block(&mean_table(&loads, &found.repeating));
     sheet.finish()
+}
+
+/// Whether the march and the periodic wake agree, and what to use.
+fn agreement_text(found: &Agreement) -> String {
+    let percent = |value: f64| format!("{value:.2} %");
+    let half = found.loads_half_width_95_percent;
+    let half = half.map_or("unknown".to_owned(), percent);
+    let says = match found.verdict {
+        Verdict::Agrees => format!("they agree to {AGREES_PERCENT} %: use either"),
+        Verdict::Differs => format!(
+            "they do NOT agree to {AGREES_PERCENT} %: the rotor does not keep the periodic wake, use the means"
+        ),
+        Verdict::Open => {
+            format!("whether they agree to {AGREES_PERCENT} % is open: measure more revolutions")
+        }
+    };
+    format!(
+        "Means against the periodic wake: loads at the blade number {} of the vector off (+- {half}), mean inflow {} off; {says}.",
+        percent(found.loads_off_percent),
+        percent(found.inflow_off_percent)
+    )
 }
 
 /// A mean, and of a load what repeats.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_study::case`] |
 //! | tables of the fields for the book, and the case of `hhc init` | `describe` |
+//! | the unit of a field by its path | `units` |
 //! | RON text, lines of fields, old names, tables, measured files and actuators that a case names | `read`, `airfoils`, `measured`, `t_file` |
 //!
 //! [`read_case`] reports every problem of a file at once. A [`LoadedCase`] is the values with the places of
@@ -16,6 +17,7 @@ mod read;
 mod t_file;
 #[cfg(test)]
 mod tests;
+mod units;
 
 pub use describe::{case_format_page, starting_case};
 pub use measured::MeasuredRotor;
@@ -25,3 +27,4 @@ pub use read::{
     with_actuator_file,
 };
 pub use rotor_study::case::*;
+pub use units::unit_of;

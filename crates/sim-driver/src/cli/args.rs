@@ -1,6 +1,6 @@
 //! The arguments of `hhc`.
 
-use super::sweep::SweepAction;
+use super::sweep::{PageArgs, SweepAction};
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
 use crate::choices::model_parser;
@@ -92,11 +92,14 @@ pub enum Command {
         #[arg(value_name = "COMMAND")]
         name: Option<String>,
     },
-    /// Show stored results again, and write their report and tables anew.
+    /// Show stored results again, and write their report and tables anew; of a merged sweep its page sweep.html.
     Report {
-        /// Folder of a study's results.
+        /// Folder of a study's results, or of a sweep's with its sweep.json.
         #[arg(value_name = "DIR")]
         dir: PathBuf,
+        /// What the page of a sweep shows.
+        #[command(flatten)]
+        page: PageArgs,
         /// Form of the output.
         #[command(flatten)]
         format: DetailArgs,
@@ -171,8 +174,8 @@ pub struct RunArgs {
     /// Inflow model instead of the case's.
     #[arg(long, value_enum, visible_alias = "wake")]
     pub inflow: Option<InflowOverride>,
-    /// Advance ratios instead of the case's, each trim started from the last: a table, sweep.csv, and a
-    /// folder of results for each.
+    /// Advance ratios instead of the case's: a sweep of one axis, with a folder of results for each, a table and sweep.csv.
+    /// What is there already is not computed again.
     #[arg(long, value_name = "MU", value_delimiter = ',')]
     pub mu: Vec<f64>,
     /// Also change one assumption at a time, those of a free wake included: sensitivity.csv.

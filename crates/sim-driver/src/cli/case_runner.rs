@@ -2,14 +2,15 @@
 
 use crate::SimError;
 use crate::actuator::{BenchActuator, actuators_with, identified};
-use crate::case::{ActuatorSource, LoadedCase, read_case};
+use crate::case::{ActuatorSource, LoadedCase, read_case, unit_of};
 use crate::files::{Folder, Source, read_bench, ron_text};
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::progress::Progress;
 use crate::results::{ControlLine, Figures, flap_name, set_name};
 use crate::run::run_trimmed;
 use crate::sweep::{continued_trim, refuse_diverged};
-use case_sweep::{Cell, Found, ReadCase, Runner};
+use case_sweep::{Cell, Found, NoNumbers, ReadCase, Runner};
+use measured_data::DataError;
 use rotor_base::RotorScales;
 use rotor_study::{HubLoads, WakeStatus};
 use std::collections::BTreeMap;
@@ -47,7 +48,7 @@ impl CaseRunner {
     }
 
     /// blake3 of every file that a case names: tables of aerofoils, measured files, bench data or actuator file.
-    fn inputs(&self, loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
+    pub(super) fn inputs(&self, loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
         let hash = |source: &Source| blake3::hash(source.text.as_bytes()).to_hex().to_string();
         let mut inputs = loaded.measured.inputs.clone();
         inputs.extend(loaded.table_hashes()?);
@@ -67,7 +68,10 @@ impl CaseRunner {
     }
 
     /// The actuator of bench data, identified once.
-    fn bench(&self, loaded: &LoadedCase) -> Result<Option<Arc<BenchActuator>>, SimError> {
+    pub(super) fn bench(
+        &self,
+        loaded: &LoadedCase,
+    ) -> Result<Option<Arc<BenchActuator>>, SimError> {
         let ActuatorSource::Bench(folder) = loaded.actuator_source() else { return Ok(None) };
         let mut actuators = lock(&self.actuators);
         let name = folder.display("");
@@ -85,10 +89,21 @@ impl CaseRunner {
         let trimmed = continued_trim(loaded, None)?;
         let outcome = run_trimmed(loaded, actuators, trimmed, &Progress::hidden())?;
         refuse_diverged(loaded, outcome.trimmed.wake_diverged())?;
-        let figures = outcome.figures();
-        let columns = columns(&figures, &loaded.case.scales());
-        Ok(Found { columns, warnings: figures.warnings })
+        Ok(found_of(outcome.figures(), loaded))
     }
+}
+
+/// What keeps a case from having numbers: a disk that takes none, or the case.
+pub(super) fn no_numbers(error: SimError) -> NoNumbers {
+    match error {
+        SimError::Data(error @ DataError::NotWritten { .. }) => NoNumbers::Stopped(error),
+        error => NoNumbers::Failed(error.to_string()),
+    }
+}
+
+/// The figures of a case as its result in a sweep.
+pub(super) fn found_of(figures: Figures, loaded: &LoadedCase) -> Found {
+    Found { columns: columns(&figures, &loaded.case.scales()), warnings: figures.warnings }
 }
 
 impl Runner for CaseRunner {
@@ -105,8 +120,12 @@ impl Runner for CaseRunner {
         Ok(ReadCase { canonical: Self::canonical(&loaded)?, inputs, case: loaded })
     }
 
-    fn run(&self, case: LoadedCase) -> Result<Found, String> {
-        self.found(&case).map_err(|error| error.to_string())
+    fn unit(&self, loaded: &LoadedCase, field: &str) -> Option<String> {
+        unit_of(&loaded.case, field).map(str::to_owned)
+    }
+
+    fn run(&self, case: LoadedCase) -> Result<Found, NoNumbers> {
+        self.found(&case).map_err(no_numbers)
     }
 }
 
@@ -144,7 +163,7 @@ fn control_columns(line: &ControlLine, scales: &RotorScales) -> Vec<(String, Cel
     columns.into_iter().map(|(name, cell)| (format!("{prefix}{name}"), cell)).collect()
 }
 
-/// The columns of a result: trim, residuals, power, loads without control, and every control.
+/// The columns of a result: trim, residuals, power, mean loads, loads without control, and every control.
 fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
     let (t, r) = (&figures.trim, &figures.residuals);
     let loads = figures.mean_loads.as_ref();
@@ -169,6 +188,10 @@ fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
     if let Some(wake) = figures.wake {
         columns.push(("wake".to_owned(), Cell::Text(WakeStatus::name(wake).to_owned())));
     }
+    let means = loads.into_iter().flat_map(|l| [l.hub_force_newton, l.hub_moment_newton_metre]);
+    let units = [["N"; 3], ["N_m"; 3]].concat();
+    let means = HubLoads::NAMES.iter().zip(units).zip(means.flatten());
+    columns.extend(means.map(|((name, unit), mean)| (format!("{name}_mean_{unit}"), mean.into())));
     columns.extend(load_columns("", &figures.baseline.hub_nb_per_rev, scales));
     columns.extend(figures.control.iter().flat_map(|line| control_columns(line, scales)));
     columns

@@ -8,9 +8,11 @@ mod diagnose;
 mod export;
 mod fly;
 mod identify;
+mod left;
 mod rotor;
 mod run;
 mod section;
+mod speeds;
 mod sweep;
 
 pub use args::{
@@ -85,7 +87,7 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Init { file }) => data::init(file),
         Some(Command::Completions { shell }) => data::completions(*shell),
         Some(Command::Man { name }) => data::man(name.as_deref()),
-        Some(Command::Report { dir, format }) => run::report(dir, format.form()),
+        Some(Command::Report { dir, page, format }) => run::report(dir, page, format.form()),
     }
 }
 

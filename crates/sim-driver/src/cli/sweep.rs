@@ -7,10 +7,11 @@ use crate::case::load_case;
 use crate::files::{Folder, Source, missing_file, refuse_unwritable};
 use crate::output::{Format, json, print, table};
 use crate::problem::Problem;
-use crate::progress::Progress;
+use crate::progress::{Progress, is_quiet};
+use crate::results::{RESULT_FILE, from_json};
 use case_sweep::{
-    Done, Pace, PageChoice, Plan, Ran, Shard, Store, array_script, merge, plan, read_sweep_file,
-    run, status,
+    Done, Merged, Pace, PageChoice, Plan, Ran, Runner, Shard, Store, array_script, merge, plan,
+    read_sweep_file, run, status,
 };
 use clap::{Args, Subcommand};
 use std::io::IsTerminal;
@@ -41,22 +42,12 @@ pub enum SweepAction {
         #[arg(long)]
         partial: bool,
     },
-    /// Write sweep.html: maps over two axes, parallel coordinates, reduction of J against power.
+    /// Write sweep.html: maps and carpets over two axes, parallel coordinates, reduction of J against power.
     Report {
         #[command(flatten)]
         sweep: SweepArgs,
-        /// Axis to the right; the first with several numbers if left out.
-        #[arg(long, value_name = "FIELD")]
-        x: Option<String>,
-        /// Axis upwards; the next one if left out.
-        #[arg(long, value_name = "FIELD")]
-        y: Option<String>,
-        /// Columns of sweep.csv to show; every reduction of J if left out.
-        #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
-        of: Vec<String>,
-        /// Only cases with this value on an axis; once for each axis.
-        #[arg(long, value_name = "FIELD=VALUE")]
-        at: Vec<String>,
+        #[command(flatten)]
+        page: PageArgs,
     },
     /// Print the sbatch script of an array that runs the sweep.
     Slurm {
@@ -70,6 +61,39 @@ pub enum SweepAction {
         cpus: u16,
     },
 }
+
+/// What the page of a sweep shows.
+#[derive(Debug, Clone, Args)]
+pub struct PageArgs {
+    /// Of a sweep: axis to the right; the first with several numbers if left out.
+    #[arg(long, value_name = "FIELD")]
+    x: Option<String>,
+    /// Of a sweep: axis upwards, of carpets the second; the next one if left out.
+    #[arg(long, value_name = "FIELD")]
+    y: Option<String>,
+    /// Of a sweep: columns of sweep.csv to show; every reduction of J, load at the blade number per rev without control and flap
+    /// amplitude if left out.
+    #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
+    of: Vec<String>,
+    /// Of a sweep: only cases with this value on an axis; once for each axis.
+    #[arg(long, value_name = "FIELD=VALUE")]
+    at: Vec<String>,
+}
+
+impl PageArgs {
+    fn choice(&self) -> PageChoice {
+        let (x, y, of, at) = (self.x.clone(), self.y.clone(), self.of.clone(), self.at.clone());
+        PageChoice { x, y, of, at }
+    }
+
+    /// Whether anything is chosen.
+    pub(super) fn is_given(&self) -> bool {
+        self.choice() != PageChoice::default()
+    }
+}
+
+/// Name of the file of merged results.
+const MERGED_FILE: &str = "sweep.json";
 
 /// What every action needs.
 #[derive(Debug, Clone, Args)]
@@ -102,10 +126,7 @@ pub(super) fn sweep(action: &SweepAction) -> Result<(), SimError> {
         }
         SweepAction::Status(args) => show_status(&Sweep::of(args)?, args.format),
         SweepAction::Merge { sweep, partial } => write_merged(&Sweep::of(sweep)?, *partial),
-        SweepAction::Report { sweep, x, y, of, at } => {
-            let (x, y, of, at) = (x.clone(), y.clone(), of.clone(), at.clone());
-            write_page(sweep, &PageChoice { x, y, of, at })
-        }
+        SweepAction::Report { sweep, page } => write_page(sweep, &page.choice()),
         SweepAction::Slurm { sweep, tasks, cpus } => print_script(sweep, *tasks, *cpus),
     }
 }
@@ -145,7 +166,8 @@ fn show_plan(sweep: &Sweep, format: Format) -> Result<(), SimError> {
     if format == Format::Json {
         return print(&json(&sweep.plan)?);
     }
-    let fields = sweep.plan.fields.iter().map(String::as_str);
+    let names = sweep.plan.axis_names();
+    let fields = names.iter().map(String::as_str);
     let header: Vec<&str> = ["case"].into_iter().chain(fields).chain(["key"]).collect();
     let rows = sweep.plan.cases.iter().enumerate().map(|(i, case)| {
         let key = case.key.chars().take(12).collect();
@@ -166,8 +188,19 @@ fn show_plan(sweep: &Sweep, format: Format) -> Result<(), SimError> {
 /// Time between two lines of a log, s.
 const LOG_EVERY: Duration = Duration::from_secs(30);
 
-#[expect(clippy::disallowed_methods, reason = "rate and time left are shown, not stored")]
 fn run_part(sweep: &Sweep, part: Shard, format: Format) -> Result<(), SimError> {
+    let ran = run_shown(&sweep.plan, part, &sweep.store, &sweep.runner)?;
+    print(&if format == Format::Json { json(&ran)? } else { ran_text(&ran, &sweep.out) })
+}
+
+/// Runs a part of a plan and shows how far it is.
+#[expect(clippy::disallowed_methods, reason = "rate and time left are shown, not stored")]
+pub(super) fn run_shown<R: Runner>(
+    plan: &Plan,
+    part: Shard,
+    store: &Store,
+    runner: &R,
+) -> Result<Ran, SimError> {
     let progress = Progress::new(1);
     progress.doing("sweep");
     let begun = Instant::now();
@@ -177,15 +210,14 @@ fn run_part(sweep: &Sweep, part: Shard, format: Format) -> Result<(), SimError> 
         let pace = Pace { done, elapsed_s: begun.elapsed().as_secs_f64() };
         progress.doing(pace.to_string());
         let mut logged = logged.lock().unwrap_or_else(PoisonError::into_inner);
-        if is_log && logged.elapsed() > LOG_EVERY {
+        if is_log && !is_quiet() && logged.elapsed() > LOG_EVERY {
             eprintln!("{pace}");
             *logged = Instant::now();
         }
     };
-    let ran = run(&sweep.plan, part, &sweep.store, &sweep.runner, &done);
+    let ran = run(plan, part, store, runner, &done);
     progress.finish();
-    let ran = ran?;
-    print(&if format == Format::Json { json(&ran)? } else { ran_text(&ran, &sweep.out) })
+    Ok(ran?)
 }
 
 /// Lines of failed cases that are shown.
@@ -234,8 +266,7 @@ fn show_status(sweep: &Sweep, format: Format) -> Result<(), SimError> {
 
 fn write_merged(sweep: &Sweep, partial: bool) -> Result<(), SimError> {
     let merged = merge(&sweep.plan, &sweep.store, partial)?;
-    let files = [("sweep.csv", merged.csv()), ("sweep.json", json(&merged)?)];
-    write_texts(&sweep.out, files)?;
+    write_texts(&sweep.out, merged_files(&merged)?)?;
     let failed = merged.cases.iter().filter_map(|case| Some((&case.key, case.failed.as_ref()?)));
     let failed: Vec<(&String, &String)> = failed.collect();
     print(&format!(
@@ -248,13 +279,39 @@ fn write_merged(sweep: &Sweep, partial: bool) -> Result<(), SimError> {
     ))
 }
 
+/// The files of merged results.
+pub(super) fn merged_files(merged: &Merged) -> Result<[(&'static str, String); 2], SimError> {
+    Ok([("sweep.csv", merged.csv()), (MERGED_FILE, json(merged)?)])
+}
+
 /// Writes the page of the results that are there.
 fn write_page(args: &SweepArgs, choice: &PageChoice) -> Result<(), SimError> {
     let sweep = Sweep::of(args)?;
-    let title = format!("Sweep {}", args.file.display());
-    let page = merge(&sweep.plan, &sweep.store, true)?.page(&title, choice)?;
-    write_texts(&sweep.out, [("sweep.html", page)])?;
-    print(&format!("Report in {}\n", sweep.out.join("sweep.html").display()))
+    let merged = merge(&sweep.plan, &sweep.store, true)?;
+    write_page_of(&merged, &args.file, &sweep.out, choice)
+}
+
+fn write_page_of(
+    merged: &Merged,
+    of: &Path,
+    out: &Path,
+    choice: &PageChoice,
+) -> Result<(), SimError> {
+    let page = merged.page(&format!("Sweep {}", of.display()), choice)?;
+    write_texts(out, [("sweep.html", page)])?;
+    print(&format!("Report in {}\n", out.join("sweep.html").display()))
+}
+
+/// Whether a folder holds merged results of a sweep, and no single one.
+pub(super) fn is_merged(folder: &Path) -> bool {
+    folder.join(MERGED_FILE).is_file() && !folder.join(RESULT_FILE).exists()
+}
+
+/// Writes the page of the merged results in a folder.
+pub(super) fn report_merged(folder: &Path, page: &PageArgs) -> Result<(), SimError> {
+    let source = Source::read(&folder.join(MERGED_FILE))?;
+    let merged: Merged = from_json(&source)?;
+    write_page_of(&merged, folder, folder, &page.choice())
 }
 
 /// Prints the script of an array; a sweep file with a fault is told before anything is submitted.

@@ -18,6 +18,7 @@ pub use control::{ControlEnd, ControlHead, ControlRecord, FlapRecord, SeriesLine
 pub use figures::{ControlLine, Figures, FlapLine, figures};
 pub use measured::{CurveLine, MeasuredLine, MeasuredPart};
 pub(crate) use measured::{curve_name, same_station};
+pub(crate) use stored::from_json;
 pub use stored::{RESULT_FILE, StoredResult};
 
 use rotor_study::{

@@ -83,6 +83,17 @@ impl StoredResult {
         Ok(stored)
     }
 
+    /// Whether it is what this program finds of a case with these inputs, in any order.
+    pub fn is_of(&self, case: &Case, inputs: &[String]) -> bool {
+        let sorted = |hashes: &[String]| {
+            let mut hashes = hashes.to_vec();
+            hashes.sort();
+            hashes
+        };
+        let is_key = || result_key(case, &self.inputs).is_ok_and(|key| key == self.key);
+        sorted(&self.inputs) == sorted(inputs) && is_key()
+    }
+
     /// What the figures share.
     ///
     /// # Errors
@@ -101,7 +112,11 @@ impl StoredResult {
     }
 }
 
-fn from_json<T: DeserializeOwned>(source: &Source) -> Result<T, SimError> {
+/// A value of a JSON text.
+///
+/// # Errors
+/// What is wrong in it, with line and column.
+pub(crate) fn from_json<T: DeserializeOwned>(source: &Source) -> Result<T, SimError> {
     serde_json::from_str(&source.text).map_err(|e| {
         let place = Place::at(&source.name, e.line(), e.column());
         Problem::new(place, Fault::Syntax { message: e.to_string() }).into()

@@ -121,9 +121,9 @@ fn an_unstable_blade_is_warned_of() {
     assert!(!err.contains("unstable"), "{err}");
 }
 
-/// A sweep is the same trims as one by one, each in a folder of its own, and a table over them.
+/// A sweep of advance ratios is the same results as one by one, each in a folder of its own, and a table over them.
 #[test]
-fn advance_ratios_are_run_one_from_the_other() {
+fn advance_ratios_are_run_one_by_one() {
     let place = Place::new();
     place.write("case.ron", QUICK_CASE);
     let json =
@@ -132,8 +132,7 @@ fn advance_ratios_are_run_one_from_the_other() {
     assert_eq!(rows.len(), 2);
     let alone = place.hhc(&["run", "case.ron", "--format", "json"]).json();
     for key in ["theta0_deg", "theta1c_deg", "theta1s_deg"] {
-        let (swept, alone) = (number(&rows[1]["result"]["trim"][key]), number(&alone["trim"][key]));
-        assert!((swept - alone).abs() < 1e-6, "{key}: {swept} {alone}");
+        assert_eq!(rows[1]["result"]["trim"][key], alone["trim"][key], "{key}");
     }
     for (row, mu) in rows.iter().zip(["0.1", "0.2"]) {
         let text = place.read(&format!("s/mu_{mu}/result.json"));
@@ -141,7 +140,8 @@ fn advance_ratios_are_run_one_from_the_other() {
         assert_eq!(stored["result"]["trim"], row["result"]["trim"]);
         assert_eq!(stored["case"]["advance_ratio"].to_string(), mu);
     }
-    assert_eq!(place.read("s/sweep.csv").lines().count(), 3);
+    let csv = place.read("s/sweep.csv");
+    assert!(csv.lines().count() == 3 && csv.starts_with("case,advance_ratio,failed,theta0_deg,"));
     let text = place.hhc(&["run", "case.ron", "--mu", "0.2,0.1"]).done();
     assert!(text.contains("mu_") || text.contains("0.100"), "{text}");
     place
@@ -150,7 +150,44 @@ fn advance_ratios_are_run_one_from_the_other() {
     place.hhc(&["run", "case.ron", "--mu", "0.1,0.1"]).rejected(&["0.1 is given twice"]);
 }
 
-/// A sweep that fails on its way says where, and what was found before is kept whole.
+/// What is there is not computed again; a folder that is gone, altered or of another case is.
+#[test]
+fn advance_ratios_go_on_where_they_were() {
+    let place = Place::new();
+    place.write("case.ron", QUICK_CASE);
+    let run = |mu: &str| place.hhc(&["run", "case.ron", "--mu", mu, "--out", "s"]).done();
+    let there = |text: &str, count: usize, of: usize| {
+        let said = format!("; {count} of {of} were there");
+        assert_eq!(text.contains(&said), count > 0, "{count} of {of}: {text}");
+    };
+    there(&run("0.1,0.2"), 0, 2);
+    let first = place.read("s/mu_0.1/result.json");
+    let table = |text: &str| text.split("\nResults in").next().unwrap().to_owned();
+    let (more, again) = (run("0.2,0.1,0.15"), run("0.2,0.1,0.15"));
+    there(&more, 2, 3);
+    there(&again, 3, 3);
+    assert_eq!(table(&more), table(&again));
+    assert_eq!(place.read("s/sweep.csv").lines().count(), 4);
+    for broken in ["", "{}", &first.replacen("0.1", "0.2", 1)] {
+        place.write("s/mu_0.1/result.json", broken);
+        there(&run("0.1,0.2"), 1, 2);
+        assert_eq!(place.read("s/mu_0.1/result.json"), first);
+    }
+    // another case in the same folder, and the first one again
+    place.write("case.ron", &QUICK_CASE.replace("ct_sigma: 0.07", "ct_sigma: 0.08"));
+    there(&run("0.1,0.2"), 0, 2);
+    place.write("case.ron", QUICK_CASE);
+    there(&run("0.1"), 0, 1);
+    assert_eq!(place.read("s/mu_0.1/result.json"), first);
+    // the merged table has a page of its own
+    run("0.1,0.15,0.2");
+    place.hhc(&["report", "s"]).done();
+    assert!(place.read("s/sweep.html").contains("Over one axis"));
+    place.hhc(&["report", "s", "--x", "mu"]).rejected(&["mu is no axis (advance_ratio)"]);
+    place.hhc(&["report", "s/mu_0.1", "--x", "a"]).rejected(&["has no sweep.json"]);
+}
+
+/// An advance ratio that fails is named and stays failed, and the others are found.
 #[test]
 fn a_sweep_that_fails_names_its_advance_ratio_and_keeps_the_others() {
     let place = Place::new();
@@ -160,18 +197,19 @@ fn a_sweep_that_fails_names_its_advance_ratio_and_keeps_the_others() {
         .replace("ct_sigma: 0.07", "ct_sigma: 0.14")
         .replace("harmonics: [[3]]", "harmonics: []");
     place.write("case.ron", &case);
-    place.hhc(&["run", "case.ron", "--mu", "0.1,0.5", "--out", "s"]).failed(
-        2,
-        &["advance ratio 0.5: case.ron", "Remedy", "the result at 0.1 before it is stored"],
-    );
-    assert_eq!(place.read("s/sweep.csv").lines().count(), 2);
+    let args = ["run", "case.ron", "--mu", "0.5,0.1", "--out", "s"];
+    let parts = ["advance ratio 0.5: case.ron", "Remedy", "the result at 0.1 is stored"];
+    let said = place.hhc(&args).failed(1, &parts);
+    let rows = place.read("s/sweep.csv");
+    assert!(rows.lines().nth(1).unwrap().contains("Remedy"), "{rows}");
+    assert_eq!(rows.lines().count(), 3);
     assert!(place.listing().iter().any(|name| name == "s/mu_0.1/result.json"));
     assert!(!place.listing().iter().any(|name| name.starts_with("s/mu_0.5")));
-    // where the first fails nothing is left
-    place
-        .hhc(&["run", "case.ron", "--mu", "0.5,0.1", "--out", "t"])
-        .failed(2, &["advance ratio 0.5"]);
-    assert!(!place.listing().iter().any(|name| name.starts_with("t/")));
+    // it fails the same way from what is stored
+    let again = place.hhc(&args);
+    assert!(again.out.contains("2 of 2 were there"), "{}", again.out);
+    assert_eq!(again.failed(1, &parts), said);
+    place.hhc(&["run", "case.ron", "--mu", "0.5", "--out", "t"]).failed(1, &["advance ratio 0.5"]);
 }
 
 /// Blades that are called unlike and are not change nothing; a heavy one shakes the hub once per revolution.

@@ -42,8 +42,11 @@ fn any_parts_merge_to_the_same_bytes() {
     let csv = place.read("a/sweep.csv");
     let header: Vec<&str> = csv.lines().next().unwrap().split(',').collect();
     for name in [
-        "rotor.gj",
+        "rotor.gj [m0 Omega^2 R^4]",
+        "flaps[1].start_r",
         "theta0_deg",
+        "fz_mean_N",
+        "mz_mean_N_m",
         "trim_residual",
         "shaft_power_W",
         "fz_nb_per_rev_N",
@@ -56,11 +59,22 @@ fn any_parts_merge_to_the_same_bytes() {
     }
     place.hhc(&["sweep", "report", "sweep.ron", "--out", "a", "--at", "rotor.gj=0.007"]).done();
     let page = place.read("a/sweep.html");
-    for part in ["3 cases with numbers, 5 others of the 8", "parcoords", "Failed cases"] {
+    for part in [
+        "3 cases with numbers, 5 others of the 8",
+        "parcoords",
+        "Failed cases",
+        "ideal_3_per_rev_outboard_flap_amplitude_deg",
+        "fz_nb_per_rev_N",
+    ] {
         assert!(page.contains(part), "{part}");
     }
     let args = ["sweep", "report", "sweep.ron", "--out", "a", "--of", "j"];
     place.hhc(&args).rejected(&["j is no axis (rotor.gj, "]);
+    // a grid has a carpet; the merged table alone does for the page
+    place.hhc(&["report", "a", "--at", "flaps[1].start_r=0.8", "--of", "fz_mean_N"]).done();
+    let page = place.read("a/sweep.html");
+    let carpet = "Lines of one rotor.gj [m0 Omega^2 R^4] and of one flaps[1].end_r";
+    assert!(page.contains(carpet) && page.contains("contour"));
     // a number of the table is that of the case on its own
     place.write("one.ron", &QUICK_CASE.replace(
         "inflow:",

@@ -1,0 +1,154 @@
+//! What is computed of a case beside it, and what its run leaves behind.
+
+use crate::SimError;
+use crate::case::LoadedCase;
+use crate::files::write_atomic;
+use crate::progress::Progress;
+use crate::report::{
+    StudyReport, histories_csv, measured_csv, report_html, robustness_csv, sensitivity_csv,
+};
+use crate::results::{Figures, RESULT_FILE, RunResult, StoredResult};
+use crate::run::{RunOutcome, steps_of, stored_of};
+use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
+use std::path::Path;
+use study_text::{airloads_csv, blade_loads_csv, costs_csv, fronts_csv, tip_csv, vortices_csv};
+use trim::WakeTrim;
+
+/// What is computed beside the case.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Scope {
+    /// One assumption changed at a time.
+    pub(super) sensitivity: Option<Assumptions>,
+    /// Flights under noise, a wrong T and drift.
+    pub(super) robustness: bool,
+}
+
+impl Scope {
+    /// Steps of the progress of a case with all of it.
+    pub(super) fn steps(self, loaded: &LoadedCase) -> usize {
+        let flights = if self.robustness { robustness_flights(&loaded.case) } else { 0 };
+        steps_of(loaded) + self.sensitivity.map_or(0, |which| which.rows(&loaded.case)) + flights
+    }
+
+    /// What is computed, in words.
+    pub(super) fn names(self) -> Vec<String> {
+        let names = [(self.sensitivity.is_some(), "sensitivity"), (self.robustness, "robustness")];
+        names.iter().filter(|(is_asked, _)| *is_asked).map(|(_, name)| (*name).to_owned()).collect()
+    }
+
+    /// Whether a result has what is computed, and no more.
+    pub(super) fn is_of(self, result: &RunResult) -> bool {
+        self.sensitivity.is_none() == result.sensitivity.is_empty()
+            && self.robustness != result.robustness.is_empty()
+    }
+
+    /// The outcome with what is computed beside the case.
+    pub(super) fn added(
+        self,
+        loaded: &LoadedCase,
+        mut outcome: RunOutcome,
+        progress: &Progress,
+    ) -> Result<RunOutcome, SimError> {
+        if let Some(which) = self.sensitivity {
+            progress.doing("sensitivity");
+            let done = || progress.step();
+            let RunOutcome { trimmed, drives, .. } = &outcome;
+            outcome.result.sensitivity = sensitivities(&loaded.case, trimmed, drives, which, &done)
+                .map_err(|error| loaded.located(error))?;
+        }
+        if self.robustness {
+            progress.doing("robustness");
+            let done = || progress.step();
+            let RunOutcome { trimmed, drives, .. } = &outcome;
+            (outcome.result.robustness, outcome.result.margins) =
+                robustness_maps(&loaded.case, trimmed, drives, &done)
+                    .map_err(|error| loaded.located(error))?;
+        }
+        Ok(outcome)
+    }
+}
+
+/// Writes everything a run leaves behind.
+pub(super) fn store(
+    loaded: &LoadedCase,
+    outcome: &RunOutcome,
+    figures: &Figures,
+    out: &Path,
+) -> Result<StoredResult, SimError> {
+    let stored = stored_of(loaded, outcome)?;
+    stored.write(&out.join(RESULT_FILE))?;
+    let blade_loads = blade_loads_csv(&outcome.blade_loads, &loaded.case.scales());
+    write_atomic(&out.join("blade_loads.csv"), blade_loads.as_bytes())?;
+    let airloads = airloads_csv(&outcome.airloads);
+    write_atomic(&out.join("airloads.csv"), airloads.as_bytes())?;
+    write_atomic(&out.join("tip.csv"), tip_csv(&outcome.tip).as_bytes())?;
+    if let Some(WakeTrim { wake, .. }) = outcome.trimmed.wake() {
+        let (planes, radius_m) = (loaded.case.vortex_planes_y_r(), loaded.case.rotor.radius_m);
+        let vortices = vortices_csv(wake, &planes, radius_m);
+        write_atomic(&out.join("vortices.csv"), vortices.as_bytes())?;
+    }
+    write_shown(&StudyReport { stored: &stored, figures }, out)?;
+    Ok(stored)
+}
+
+/// Writes what follows from a stored result: tables, picture and report.
+pub(super) fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
+    let StudyReport { stored, figures } = *report;
+    let write = |name: &str, text: &str| write_atomic(&out.join(name), text.as_bytes());
+    write("histories.csv", &histories_csv(&stored.result.control))?;
+    if !figures.sensitivity.is_empty() {
+        let harmonics = &stored.case.control.harmonics;
+        write("sensitivity.csv", &sensitivity_csv(harmonics, &figures.sensitivity))?;
+    }
+    if !stored.result.robustness.is_empty() {
+        write("robustness.csv", &robustness_csv(&stored.result.robustness))?;
+    }
+    if !figures.costs.is_empty() {
+        write("costs.csv", &costs_csv(&figures.costs))?;
+    }
+    if figures.fronts.iter().any(|line| !line.points.is_empty()) {
+        write("fronts.csv", &fronts_csv(&figures.fronts))?;
+    }
+    if stored.result.measured.is_some() {
+        write("measured.csv", &measured_csv(figures))?;
+    }
+    let finding = report.finding();
+    if finding.is_drawn() {
+        write("figure.svg", &finding.svg(&stored.case.title))?;
+    }
+    Ok(write("report.html", &report_html(report))?)
+}
+
+/// Says of a run that failed that the results in its folder are not its own.
+pub(super) fn note_earlier(out: &Path) {
+    if out.join(RESULT_FILE).is_file() {
+        eprintln!("note: the results in {} are of an earlier run", out.display());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rotor_study::{RobustnessCell, Sensitivity};
+
+    /// A result with more than was asked for, or with less, is computed again; its key says what was asked for.
+    #[test]
+    fn a_result_is_of_the_scope_that_it_has() {
+        let scopes = [(false, false), (true, false), (false, true), (true, true)]
+            .map(|(s, r)| Scope { sensitivity: s.then_some(Assumptions::WithWake), robustness: r });
+        let results = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(s, r): (usize, usize)| RunResult {
+            sensitivity: vec![Sensitivity::default(); s],
+            robustness: vec![RobustnessCell::default(); r],
+            ..RunResult::default()
+        });
+        for (i, scope) in scopes.into_iter().enumerate() {
+            for (j, result) in results.iter().enumerate() {
+                assert_eq!(scope.is_of(result), i == j, "{scope:?} {j}");
+            }
+        }
+        assert_eq!(
+            scopes.map(|scope| scope.names().join(" ")),
+            ["", "sensitivity", "robustness", "sensitivity robustness"]
+        );
+    }
+}
