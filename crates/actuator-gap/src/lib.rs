@@ -38,7 +38,7 @@ mod sessions;
 mod simulator;
 mod surrogate;
 
-pub use actuator_file::at_work::{ActuatorUse, Deviation, UseError, UseSample};
+pub use actuator_file::at_work::{ActuatorUse, Commanded, Deviation, UseError, UseSample};
 pub use actuator_file::{
     GainRule, HarmonicResponse, StoredActuator, StoredChannels, StoredFit, StoredKind,
 };

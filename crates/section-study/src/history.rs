@@ -74,7 +74,8 @@ impl Cycle {
         let inputs = (1..=steps)
             .map(|n| {
                 let (sin, cos) = (TAU * n as f64 / steps as f64).sin_cos();
-                let mut inputs = inputs(motion, amplitude_rad * sin, amplitude_rad * k * cos);
+                let swing = [sin, k * cos, -k * k * sin].map(|part| amplitude_rad * part);
+                let mut inputs = inputs(motion, swing);
                 inputs.modes[0] += mean_rad - zero_lift_rad;
                 inputs
             })
@@ -96,8 +97,8 @@ impl Cycle {
     }
 }
 
-/// Inputs of a motion at a value and a rate per semichord.
-fn inputs(motion: Motion, value: f64, rate: f64) -> SectionInputs {
+/// Inputs of a motion at a value, with its first and second derivative by semichords.
+fn inputs(motion: Motion, [value, rate, bend]: [f64; 3]) -> SectionInputs {
     let mut inputs = SectionInputs::default();
     let (angle, turning) = match motion {
         Motion::Flap => (2, Some(3)),
@@ -109,6 +110,7 @@ fn inputs(motion: Motion, value: f64, rate: f64) -> SectionInputs {
     if let Some(turning) = turning {
         // q = d(angle)/dt c/U = 2 d(angle)/dS
         inputs.modes[turning] = 2.0 * rate;
+        inputs.rates[turning] = 2.0 * bend;
     }
     inputs
 }
@@ -139,8 +141,8 @@ pub fn transient_history(
     let section = MarchingSection::new(&section);
     let mut state = SectionState::at_rest(&section);
     // on the way up the rate is there at once, at the top it is gone at once
-    let going = |s: f64| inputs(motion, s / rise, 1.0 / rise);
-    let arrived = inputs(motion, 1.0, 0.0);
+    let going = |s: f64| inputs(motion, [s / rise, 1.0 / rise, 0.0]);
+    let arrived = inputs(motion, [1.0, 0.0, 0.0]);
     let start = if rise > 0.0 { going(0.0) } else { arrived };
     state.jump(&section, &start.modes)?;
     let row = |s: f64, loads: [f64; 3]| -> Vec<f64> {
@@ -185,6 +187,81 @@ pub fn transient_history(
         },
         rows,
     })
+}
+
+/// A section driven by histories of incidence and flap angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DrivenQuestion<'a> {
+    /// The section.
+    pub section: SectionChoice,
+    /// Distance between two samples, semichords, above 0.
+    pub step_semichords: f64,
+    /// Incidence at the quarter chord at every sample, rad, nose up.
+    pub incidence_rad: &'a [f64],
+    /// Flap angle at every sample, rad, trailing edge down.
+    pub flap_rad: &'a [f64],
+    /// Whether the incidence changes by pitching about the quarter chord; else by plunging.
+    pub pitches: bool,
+}
+
+/// Fewest samples of a driven section: what the rates at the ends are taken from.
+const FEWEST_SAMPLES: usize = 3;
+
+/// `[Cn, Cm, Ch]` at every sample of histories of incidence and flap angle, attached flow. Before the first sample both were
+/// held for ever.
+///
+/// ```text
+/// q = 2 d(alpha)/dS,   q_delta = 2 d(delta)/dS,     rates by differences of second order, inputs straight in between
+/// ```
+/// The error falls with the square of the step.
+///
+/// # Errors
+/// [`AeroError`] for a section outside its model, a step that is not positive, fewer than three samples, histories of unequal
+/// length, a number that is not finite.
+pub fn driven_history(question: &DrivenQuestion<'_>) -> Result<Vec<[f64; 3]>, AeroError> {
+    let DrivenQuestion { section, step_semichords: ds, incidence_rad, flap_rad, pitches } =
+        *question;
+    within("step, semichords", ds, ds > 0.0 && ds <= LONGEST, "above 0, to 1e6")?;
+    let (samples, flaps) = (incidence_rad.len(), flap_rad.len());
+    let fits = (FEWEST_SAMPLES..=MOST_POINTS).contains(&samples);
+    within("number of samples of the incidence", samples as f64, fits, "3 to 1000000")?;
+    let expected = "as many as of the incidence";
+    within("number of samples of the flap angle", flaps as f64, flaps == samples, expected)?;
+    let (coefficients, ..) = section.coefficients()?;
+    let marching = MarchingSection::new(&coefficients);
+    let columns = [incidence_rad, flap_rad].map(|angle| {
+        let rates = slopes(angle, ds);
+        let bends = slopes(&rates, ds);
+        (angle, rates, bends)
+    });
+    let at = |n: usize| {
+        let [(incidence, rise, bend), (flap, turn, turned)] = &columns;
+        let pitching = if pitches { 2.0 } else { 0.0 };
+        SectionInputs {
+            modes: [incidence[n], pitching * rise[n], flap[n], 2.0 * turn[n]],
+            rates: [rise[n], pitching * bend[n], turn[n], 2.0 * turned[n]],
+        }
+    };
+    let first = at(0);
+    let mut state = SectionState::settled(&marching, &[first.modes[0], 0.0, first.modes[2], 0.0]);
+    state.jump(&marching, &first.modes)?;
+    let begun = state.loads(&marching, &first);
+    let rest = (1..samples).map(|n| state.step(&marching, &at(n), ds));
+    std::iter::once(begun).chain(rest).collect()
+}
+
+/// Derivatives of evenly spaced values, three or more: central differences, one-sided ones of second order at the ends.
+fn slopes(values: &[f64], step: f64) -> Vec<f64> {
+    let last = values.len() - 1;
+    let slope = |n: usize| {
+        let difference = match n {
+            0 => 4.0 * values[1] - 3.0 * values[0] - values[2],
+            n if n == last => 3.0 * values[n] - 4.0 * values[n - 1] + values[n - 2],
+            n => values[n + 1] - values[n - 1],
+        };
+        difference / (2.0 * step)
+    };
+    (0..values.len()).map(slope).collect()
 }
 
 /// One cycle of a motion that has repeated for ever.

@@ -5,10 +5,11 @@
 //! | harmonic | complex amplitudes at one frequency | here |
 //! | step, ramp | history after a unit step, or a unit ramp over a distance | `history` |
 //! | loop | one cycle of a motion that repeats, with dynamic stall on request | `history` |
+//! | driven | what histories of incidence and flap angle make | `history` |
 
 mod history;
 
-pub use history::{LoopQuestion, loop_history, transient_history};
+pub use history::{DrivenQuestion, LoopQuestion, driven_history, loop_history, transient_history};
 
 use flap_aero::{
     AeroError, AttachedFlowModel, FlapChord, FlapEffectiveness, KNOWN_ERROR_BANDS, Mach, Mode,
@@ -47,6 +48,11 @@ impl SectionChoice {
         let flap = FlapChord::new(self.flap_chord)?;
         let section = self.model.coefficients(mach, flap)?;
         Ok((section.with_flap_effectiveness(&self.effectiveness), mach, flap))
+    }
+
+    /// What a reader of the loads of a history has to know; `motion` is what moves.
+    pub fn remarks_in_motion(&self, of_model: &ModelRemarks, motion: Motion) -> Vec<String> {
+        self.remarks(of_model, Some(Moved { motion, reduced_frequency: None }))
     }
 
     /// What a reader of a static curve has to know.

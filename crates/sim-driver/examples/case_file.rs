@@ -38,7 +38,7 @@ fn main() -> Result<(), SimError> {
         terms: GyroscopicTerms::Neglected,
         pitch_rad: 8.0_f64.to_radians(),
         about: AboutState::Undeformed,
-        speed_ratios: vec![],
+        ..ModesQuestion::default()
     };
     let mut modes = rotating_modes(&case, &question)?.modes;
     modes.sort_by(|a, b| a.hz.total_cmp(&b.hz));

@@ -1,6 +1,8 @@
-//! Choices of case files on the command line, by the names that serde knows.
+//! Choices of case files on the command line and of other callers, by the names that serde knows.
 
+use crate::problem::{Fault, Place, Problem, Problems};
 use bench_study::identification::ModelChoice;
+use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use preisach_dyn::identify::Family;
 use rotor_study::case::variant_names;
@@ -19,10 +21,72 @@ pub(crate) fn spelt(name: &str, separator: char) -> String {
     text
 }
 
+/// A choice without fields by its name, spelt as on the command line; `option` is what it was given as.
+///
+/// # Errors
+/// A name that is not known, with those that are.
+pub fn choice_named<T: DeserializeOwned>(option: &str, given: &str) -> Result<T, Problem> {
+    let names = variant_names::<T>();
+    let found = names.iter().find(|name| spelt(name, '-') == given);
+    let read = found.and_then(|name| {
+        let name: StrDeserializer<'_, Error> = name.into_deserializer();
+        T::deserialize(name).ok()
+    });
+    read.ok_or_else(|| unknown(option, given, names.iter().map(|name| spelt(name, '-'))))
+}
+
+/// A choice of the command line by its name.
+///
+/// # Errors
+/// As [`choice_named`].
+pub fn value_named<T: ValueEnum>(option: &str, given: &str) -> Result<T, Problem> {
+    let known = T::value_variants().iter().filter_map(ValueEnum::to_possible_value);
+    let known = known.map(|value| value.get_name().to_owned());
+    T::from_str(given, false).map_err(|_| unknown(option, given, known))
+}
+
+/// A family of models by its name; `best` leaves the choice to cross-validation.
+///
+/// # Errors
+/// As [`choice_named`].
+pub fn model_named(option: &str, given: &str) -> Result<ModelChoice, Problem> {
+    let names = || Family::ALL.map(|family| spelt(&format!("{family:?}"), '-'));
+    if given == BEST {
+        return Ok(None);
+    }
+    let found = Family::ALL.into_iter().zip(names()).find(|(_, name)| name == given);
+    let known = std::iter::once(BEST.to_owned()).chain(names());
+    found.map(|(family, _)| Some(family)).ok_or_else(|| unknown(option, given, known))
+}
+
+/// Refuses a number of the command line that is out of its range.
+pub(crate) fn check_range(
+    problems: &mut Problems,
+    option: &str,
+    value: f64,
+    [low, high]: [f64; 2],
+    unit: &'static str,
+    remedy: &'static str,
+) {
+    if !(low..=high).contains(&value) {
+        problems.push(Place::file(option), Fault::OutOfRange { value, low, high, unit, remedy });
+    }
+}
+
+/// The choice that is left to cross-validation.
+const BEST: &str = "best";
+
+fn unknown(option: &str, given: &str, known: impl Iterator<Item = String>) -> Problem {
+    let known = known.collect::<Vec<_>>().join(", ");
+    let found = given.to_owned();
+    let fault = Fault::Unknown { what: "choice", found, known, nearest: None };
+    Problem::new(Place::file(option), fault)
+}
+
 /// Reads a choice of models from the command line.
 pub(crate) fn model_parser() -> impl TypedValueParser<Value = ModelChoice> {
     let spelling = |family: Family| spelt(&format!("{family:?}"), '-');
-    let best = PossibleValue::new("best")
+    let best = PossibleValue::new(BEST)
         .help("the one that cross-validation over the training runs chooses");
     // the parser keeps its names as long as the program runs
     let families =

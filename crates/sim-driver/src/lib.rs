@@ -15,13 +15,14 @@
 //! | a case flown in time | [`flight`] |
 //! | two results side by side | [`compare`] |
 //! | the HTML report | [`report`] |
+//! | choices by their names on the command line | [`choices`] |
 //! | `hhc` | [`cli`] |
 
 pub mod actuator;
 pub mod actuator_use;
 pub mod case;
 pub mod check;
-mod choices;
+pub mod choices;
 pub mod cli;
 pub mod compare;
 pub mod diagnose;

@@ -2,7 +2,9 @@
 
 use crate::SimError;
 use crate::case::LoadedCase;
+use crate::choices::check_range;
 use crate::output::Printable;
+use crate::problem::Problems;
 use rotor_flight::{WakeInTimeResult, wake_in_time_text};
 use rotor_study::{
     Drives, ModesQuestion, ModesResult, RootPitchComparison, StudyError, TrimmedRotor, WakeResult,
@@ -14,11 +16,20 @@ use study_text::{WakeFiles, modes_text, root_pitch_text, wake_text};
 /// Rotating modes of a case's blade, with plausibility warnings about the blade.
 ///
 /// # Errors
-/// [`SimError::Study`].
+/// A pitch beyond a quarter of a turn, a rotor speed outside 0 to 10 times the nominal one; [`SimError::Study`].
 pub fn modes_of_case(
     loaded: &LoadedCase,
     question: &ModesQuestion,
 ) -> Result<ModesResult, SimError> {
+    let mut problems = Problems::default();
+    let remedy = "the collective at 0.75 R, a finite number";
+    let pitch_deg = question.pitch_rad.to_degrees();
+    check_range(&mut problems, "--pitch-deg", pitch_deg, [-90.0, 90.0], "deg", remedy);
+    let remedy = "rotor speeds over the nominal one; 0 is a blade at rest";
+    for &ratio in &question.speed_ratios {
+        check_range(&mut problems, "--speeds", ratio, [0.0, 10.0], "", remedy);
+    }
+    problems.into_result(Some(()))?;
     let doubts = || loaded.in_words(loaded.case.blade_warnings());
     let found = rotating_modes(&loaded.case, question)
         .map_err(|error| loaded.located(error).in_doubt(doubts()))?;

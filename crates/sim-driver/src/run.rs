@@ -128,19 +128,15 @@ pub fn run_trimmed(
     warnings.extend(unstable());
     let each_unlike = each_unlike_blade(&loaded.case, &trimmed).map_err(failed)?;
     warnings.extend(each_unlike.iter().flat_map(|line| line.warnings(found.flight.advance_ratio)));
-    let baseline = HubLoads::from_parts(found.rotor.hub.harmonic(loaded.case.rotor.blades));
-    let setting = Setting::of_case(&loaded.case, &baseline);
+    let alone = trimmed_result(loaded, &trimmed);
+    let setting = Setting::of_case(&loaded.case, &alone.baseline.hub_nb_per_rev);
     let costs = control_costs(&loaded.case, &trimmed, &drives, &studies).map_err(failed)?;
     let unlike_blades = unlike_lines(&loaded.case, &trimmed, &studies).map_err(failed)?;
     warnings.extend(unlike_warnings(&unlike_blades, &studies));
     // flaps at rest stand first; with every blade alike there is no line
-    let mean = unlike_blades.first().map_or_else(|| found.rotor.hub.mean(), |rest| rest.mean);
+    let unlike = unlike_blades.first().map(|rest| MeanHubLoads { hub: rest.mean });
     let result = RunResult {
-        mean_loads: Some(MeanHubLoads { hub: mean }),
-        trim: trim_line(loaded, found),
-        wake: trimmed.wake().map(wake_status),
-        residuals: residuals(found),
-        baseline: Baseline { hub_nb_per_rev: baseline },
+        mean_loads: unlike.or(alone.mean_loads),
         blade_loads: station_lines(&blade_loads, &loaded.case.scales()),
         disk: Some(disk),
         curves: curves.iter().map(CurveLine::of).collect(),
@@ -153,7 +149,7 @@ pub fn run_trimmed(
         costs: (!studies.is_empty()).then_some(costs),
         fronts,
         warnings,
-        ..RunResult::default()
+        ..alone
     };
     Ok(RunOutcome {
         result,
@@ -205,6 +201,20 @@ fn no_vortices(loaded: &LoadedCase) -> Option<String> {
     let place = loaded.index.place("measured.vortex_centres");
     let problem = Problem::new(place, Fault::Other(message.to_owned()));
     (!loaded.measured.vortex_centres.is_empty()).then(|| problem.to_string())
+}
+
+/// What the trim of a case says without control: controls, residuals, wake, loads on the hub of like blades.
+pub fn trimmed_result(loaded: &LoadedCase, trimmed: &TrimmedRotor) -> RunResult {
+    let found = trimmed.trim();
+    let loads = HubLoads::from_parts(found.rotor.hub.harmonic(loaded.case.rotor.blades));
+    RunResult {
+        mean_loads: Some(MeanHubLoads { hub: found.rotor.hub.mean() }),
+        trim: trim_line(loaded, found),
+        wake: trimmed.wake().map(wake_status),
+        residuals: residuals(found),
+        baseline: Baseline { hub_nb_per_rev: loads },
+        ..RunResult::default()
+    }
 }
 
 fn trim_line(loaded: &LoadedCase, solution: &TrimSolution) -> TrimLine {

@@ -35,7 +35,10 @@ pub fn continued_trim(
 }
 
 /// Ends in failure what is no solution, after what was found is stored and shown.
-pub(crate) fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
+///
+/// # Errors
+/// [`SimError::WakeDiverged`].
+pub fn refuse_diverged(loaded: &LoadedCase, diverged: bool) -> Result<(), SimError> {
     if diverged {
         return Err(SimError::WakeDiverged { place: loaded.index.place("inflow.model") });
     }

@@ -41,6 +41,21 @@ pub struct ActuatorUse {
     pub samples: Vec<UseSample>,
 }
 
+/// A voltage under which an actuator moves as wanted, and what is left of the wanted motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Commanded {
+    /// Voltage at every sample, in the unit of the input.
+    pub input: Vec<f64>,
+    /// Motion under it, in the unit of the wanted one.
+    pub output: Vec<f64>,
+    /// How far that motion is from the wanted one.
+    pub error: Deviation,
+    /// Samples whose voltage is an end of the range.
+    pub at_limit: usize,
+    /// Simulations it took.
+    pub simulations: usize,
+}
+
 /// How far an output is from what was measured or wanted.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Deviation {
@@ -86,13 +101,12 @@ fn shown(own: &StoredActuator, angles_deg: &[f64], is_displacement: bool) -> Vec
 }
 
 /// How far outputs are from what is beside them.
-fn deviation_of(samples: &[UseSample], is_wanted: bool) -> Option<Deviation> {
-    let beside: Vec<f64> = samples.iter().filter_map(|own| own.beside).collect();
-    let off: Vec<f64> = samples.iter().filter_map(|own| Some(own.output - own.beside?)).collect();
+fn deviation_of(output: &[f64], beside: &[f64], is_wanted: bool) -> Deviation {
+    let off: Vec<f64> = output.iter().zip(beside).map(|(own, beside)| own - beside).collect();
     let rms = rotor_base::mean_square(&off).sqrt();
     let largest = off.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
-    let nrmse_percent = 100.0 * rms / rotor_base::variance(&beside).sqrt();
-    (!beside.is_empty()).then_some(Deviation { is_wanted, rms, largest, nrmse_percent })
+    let nrmse_percent = 100.0 * rms / rotor_base::variance(beside).sqrt();
+    Deviation { is_wanted, rms, largest, nrmse_percent }
 }
 
 fn samples(
@@ -124,10 +138,7 @@ impl StoredActuator {
             Some((name, _, is_displacement)) => (name.clone(), *is_displacement),
             None => (self.output_columns().swap_remove(0), true),
         };
-        let found = self.model.simulate_bench(&Drive::new(&command, record.step_s))?;
-        // a displacement is what its sensor reads
-        let angles = if is_displacement { &found.measured_deg } else { &found.output_deg };
-        let output = shown(self, angles, is_displacement);
+        let output = self.output_under(&command, record.step_s, is_displacement)?;
         let beside = measured.as_ref().map(|own| &own.1[..]);
         let samples = samples(&record.time_s, &command, &output, beside);
         Ok(ActuatorUse {
@@ -135,7 +146,7 @@ impl StoredActuator {
             record: record.table.header_place().file,
             step_s: record.step_s,
             columns: [input, name],
-            error: deviation_of(&samples, false),
+            error: beside.map(|beside| deviation_of(&output, beside, false)),
             at_limit: None,
             simulations: None,
             samples,
@@ -149,23 +160,64 @@ impl StoredActuator {
     pub fn inverted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
         let (name, wanted, is_displacement) =
             output_of(self, record)?.ok_or_else(|| record.missing(&self.output_columns()[0]))?;
-        let calibration = self.model.calibration;
-        let angle =
-            |value: &f64| if is_displacement { calibration.output_deg(*value) } else { *value };
-        let angles: Vec<f64> = wanted.iter().map(angle).collect();
-        let settings = HistoryInverseSettings::default();
-        let found = self.model.history_inverse(&angles, record.step_s, &settings)?;
-        let output = shown(self, &found.output_deg, is_displacement);
-        let samples = samples(&record.time_s, &found.voltage_volt, &output, Some(&wanted));
+        let found = self.command_for(&wanted, record.step_s, is_displacement)?;
+        let samples = samples(&record.time_s, &found.input, &found.output, Some(&wanted));
         Ok(ActuatorUse {
             actuator: self.title.clone(),
             record: record.table.header_place().file,
             step_s: record.step_s,
             columns: [self.input_columns().swap_remove(0), name],
-            error: deviation_of(&samples, true),
+            error: Some(found.error),
             at_limit: Some(found.at_limit),
-            simulations: Some(found.iterations),
+            simulations: Some(found.simulations),
             samples,
+        })
+    }
+
+    /// What it does under a command: the displacement as its sensor reads it, in the unit of its data, or the flap angle, deg.
+    ///
+    /// | argument | meaning | unit |
+    /// |---|---|---|
+    /// | `command` | input at every sample | V, or the unit of its data |
+    /// | `step_s` | time between two samples, above 0 | s |
+    ///
+    /// # Errors
+    /// As [`ActuatorModel::simulate_bench`](preisach_dyn::ActuatorModel::simulate_bench).
+    pub fn output_under(
+        &self,
+        command: &[f64],
+        step_s: f64,
+        is_displacement: bool,
+    ) -> Result<Vec<f64>, PreisachError> {
+        let found = self.model.simulate_bench(&Drive::new(command, step_s))?;
+        let angles = if is_displacement { &found.measured_deg } else { &found.output_deg };
+        Ok(shown(self, angles, is_displacement))
+    }
+
+    /// The command under which it moves as wanted: a displacement in the unit of its data, or a flap angle, deg. What is out of
+    /// reach stays as error.
+    ///
+    /// # Errors
+    /// As [`ActuatorModel::history_inverse`](preisach_dyn::ActuatorModel::history_inverse).
+    pub fn command_for(
+        &self,
+        wanted: &[f64],
+        step_s: f64,
+        is_displacement: bool,
+    ) -> Result<Commanded, PreisachError> {
+        let calibration = self.model.calibration;
+        let angle =
+            |value: &f64| if is_displacement { calibration.output_deg(*value) } else { *value };
+        let angles: Vec<f64> = wanted.iter().map(angle).collect();
+        let settings = HistoryInverseSettings::default();
+        let found = self.model.history_inverse(&angles, step_s, &settings)?;
+        let output = shown(self, &found.output_deg, is_displacement);
+        Ok(Commanded {
+            error: deviation_of(&output, wanted, true),
+            input: found.voltage_volt,
+            output,
+            at_limit: found.at_limit,
+            simulations: found.iterations,
         })
     }
 }

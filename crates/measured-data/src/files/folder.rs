@@ -3,6 +3,7 @@
 use crate::problem::{Fault, Place, Problem};
 use std::fmt;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// A text file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -22,19 +23,48 @@ pub enum Folder {
     Embedded(Embedded),
 }
 
-/// A folder among files that are part of the program.
+/// A folder among files that are part of the program, or held in its memory.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Embedded {
     /// Path of the folder, with `/` between its parts.
     path: String,
-    /// Path and content of every file, in this folder or another.
-    files: &'static [(&'static str, &'static [u8])],
+    files: Files,
+}
+
+/// Path and content of every file, in one folder or another.
+#[derive(Clone, PartialEq, Eq)]
+enum Files {
+    /// Part of the program.
+    Shipped(&'static [(&'static str, &'static [u8])]),
+    /// Made while it runs.
+    Held(Arc<[(String, Vec<u8>)]>),
+}
+
+impl Files {
+    fn all(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        let (shipped, held): (&[_], &[_]) = match self {
+            Self::Shipped(files) => (files, &[]),
+            Self::Held(files) => (&[], files),
+        };
+        let held = held.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice()));
+        shipped.iter().copied().chain(held)
+    }
 }
 
 impl Embedded {
     /// The folder `path` among `files`, each with its path and its content.
     pub fn new(path: &str, files: &'static [(&'static str, &'static [u8])]) -> Self {
-        Self { path: normalised(path), files }
+        Self { path: normalised(path), files: Files::Shipped(files) }
+    }
+
+    /// A folder `path` with the given texts, each with its name: data that are in memory are read and checked as those of a
+    /// folder on disk.
+    pub fn of_texts(path: &str, texts: Vec<(String, String)>) -> Self {
+        let path = normalised(path);
+        let held =
+            texts.into_iter().map(|(name, text)| (format!("{path}/{name}"), text.into_bytes()));
+        let files = Files::Held(held.collect());
+        Self { path, files }
     }
 
     /// The path of a file of this folder.
@@ -43,9 +73,9 @@ impl Embedded {
     }
 
     /// The content of a file of this folder.
-    fn content(&self, file: &str) -> Option<&'static [u8]> {
+    fn content(&self, file: &str) -> Option<&[u8]> {
         let path = self.file(file);
-        self.files.iter().find(|(name, _)| *name == path).map(|(_, bytes)| *bytes)
+        self.files.all().find(|(name, _)| *name == path).map(|(_, bytes)| bytes)
     }
 }
 
@@ -117,13 +147,13 @@ impl Folder {
             }
             Self::Embedded(folder) => {
                 let own = folder.file("");
-                let inside = |(path, _): &&(&str, &[u8])| {
+                let inside = |(path, _): &(&str, &[u8])| {
                     path.strip_prefix(&own)
                         .is_some_and(|rest| !rest.trim_matches('/').contains('/'))
                 };
                 let name =
-                    |(path, _): &(&str, &[u8])| path[own.len()..].trim_matches('/').to_owned();
-                folder.files.iter().filter(inside).map(name).collect()
+                    |(path, _): (&str, &[u8])| path[own.len()..].trim_matches('/').to_owned();
+                folder.files.all().filter(inside).map(name).collect()
             }
         };
         names.sort();
@@ -223,6 +253,16 @@ mod tests {
         assert_eq!(bench.read("dataset.ron").unwrap().text, "()");
         assert!(!bench.contains("none.csv"));
         assert!(matches!(bench.read("none.csv").unwrap_err().fault, Fault::NotShipped { .. }));
+    }
+
+    #[test]
+    fn texts_in_memory_are_files_of_a_folder() {
+        let texts = ["dataset.ron", "a.csv"].map(|name| (name.to_owned(), format!("({name})")));
+        let folder = Folder::Embedded(Embedded::of_texts("arrays", texts.to_vec()));
+        assert_eq!(folder.files(), ["a.csv", "dataset.ron"]);
+        let read = folder.read("a.csv").unwrap();
+        assert_eq!((read.name.as_str(), read.text.as_str()), ("arrays/a.csv", "(a.csv)"));
+        assert!(!folder.contains("b.csv") && folder.size_bytes("a.csv") == 7);
     }
 
     /// Names with `..`, absolute ones and links out of the folder are refused; links inside it are not.

@@ -28,11 +28,19 @@ impl EvenRecord {
     pub fn read(source: &Source) -> Result<Self, Problems> {
         let table = PointCsv::read(source, &[])?;
         let time_s = table.full_column(TIME, "give the time of every sample, s")?;
-        let refused = |row: usize, message: String| {
+        let step_s = Self::step_of(&time_s).map_err(|(row, message)| {
             Problem::new(table.place(row, TIME), Fault::Refused { message })
-        };
+        })?;
+        Ok(Self { table, time_s, step_s })
+    }
+
+    /// Time between two samples, s, of samples at these times.
+    ///
+    /// # Errors
+    /// The sample, from 0, and what is wrong there: fewer than two samples, a step that differs from the others by more than 1 %.
+    pub fn step_of(time_s: &[f64]) -> Result<f64, (usize, String)> {
         let [first, .., last] = time_s[..] else {
-            return Err(refused(0, "one sample is no record: give two or more".to_owned()).into());
+            return Err((0, "one sample is no record: give two or more".to_owned()));
         };
         let step_s = (last - first) / (time_s.len() - 1) as f64;
         let is_even = |pair: &[f64]| (pair[1] - pair[0] - step_s).abs() <= EVEN * step_s;
@@ -41,9 +49,9 @@ impl EvenRecord {
             let message = format!(
                 "{found} s after the sample before, expected {step_s} s: give evenly spaced samples"
             );
-            return Err(refused(row + 1, message).into());
+            return Err((row + 1, message));
         }
-        Ok(Self { table, time_s, step_s })
+        Ok(step_s)
     }
 
     /// The first of some columns that is there, with its name.

@@ -6,7 +6,8 @@ use nalgebra::DVector;
 use rayon::prelude::*;
 use rotor_fem::{
     AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
-    ModeKind, ModerateBlade, ModerateModel, ModerateSpec, StaticSettings, deflected_modes, modes,
+    ModeKind, ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings,
+    deflected_modes, modes,
 };
 use rotor_response::RESONANCE_PER_REV;
 use serde::Serialize;
@@ -35,6 +36,8 @@ pub struct ModesQuestion {
     pub about: AboutState,
     /// Further rotor speeds over the nominal one.
     pub speed_ratios: Vec<f64>,
+    /// Stations r/R, 0 to 1, at which shapes are wanted.
+    pub shape_stations_r: Vec<f64>,
 }
 
 /// One mode as it is printed.
@@ -48,6 +51,10 @@ pub struct ModeLine {
     pub hz: f64,
     /// Division of the kinetic energy among flap, lag, torsion and axial motion.
     pub energy: [f64; 4],
+    /// Lag, flap (both over R) and twist (rad) at the stations asked for, each as the part that is extreme at time zero and the
+    /// part a quarter of a cycle ahead; of unit modal mass. Empty unless asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub shape: Vec<[[f64; 2]; 3]>,
 }
 
 /// Displacement of the tip in the state the modes are about.
@@ -133,9 +140,12 @@ fn modes_at(
     let nominal_rad_s = case.scales().omega_rad_s();
     let (elements, count) = (case.structure.elements, case.mode_count());
     let blade = blade.with_rotor_speed(ratio)?;
-    let (found, steady_tip) = match question.about {
+    let (lines, steady_tip) = match question.about {
         AboutState::Undeformed => {
-            (modes(&BladeModel::new(blade, elements)?, question.terms, count)?, None)
+            let model = BladeModel::new(blade, elements)?;
+            let found = modes(&model, question.terms, count)?;
+            let section = |dof: &DVector<f64>, station| model.motion(dof, station);
+            (mode_lines(&found, question, nominal_rad_s, &section)?, None)
         }
         AboutState::Deflected => {
             let spec = ModerateSpec {
@@ -150,28 +160,45 @@ fn modes_at(
             let tip = model.section(&state.dof, 1.0)?;
             let found = deflected_modes(&model, &state, question.terms, AxialMotion::Free, count)?;
             let (lag_r, flap_r) = (tip.lag[0], tip.flap[0]);
-            (found, Some(SteadyTip { lag_r, flap_r, twist_deg: tip.twist[0].to_degrees() }))
+            let section = |dof: &DVector<f64>, station| model.section(dof, station);
+            let lines = mode_lines(&found, question, nominal_rad_s, &section)?;
+            (lines, Some(SteadyTip { lag_r, flap_r, twist_deg: tip.twist[0].to_degrees() }))
         }
     };
     Ok(ModesResult {
         rotor_speed_rad_s: ratio * nominal_rad_s,
         steady_tip,
-        modes: found.iter().map(|mode| ModeLine::new(mode, nominal_rad_s)).collect(),
+        modes: lines,
         warnings: vec![],
         fan: vec![],
     })
 }
 
-impl ModeLine {
-    fn new(mode: &CoupledMode, nominal_rad_s: f64) -> Self {
+/// Reads the motion of a station from degrees of freedom.
+type ReadStation<'a> = &'a dyn Fn(&DVector<f64>, f64) -> Result<SectionMotion, FemError>;
+
+/// The modes found, with their shapes where they are wanted; `section` reads the motion of a station.
+fn mode_lines(
+    found: &[CoupledMode],
+    question: &ModesQuestion,
+    nominal_rad_s: f64,
+    section: ReadStation<'_>,
+) -> Result<Vec<ModeLine>, FemError> {
+    let line = |mode: &CoupledMode| {
         let EnergyShares { flap, lag, torsion, axial } = mode.energy;
-        Self {
+        let at = |station: &f64| {
+            let [a, b] = [section(&mode.in_phase, *station)?, section(&mode.quadrature, *station)?];
+            Ok([[a.lag[0], b.lag[0]], [a.flap[0], b.flap[0]], [a.twist[0], b.twist[0]]])
+        };
+        Ok(ModeLine {
             kind: mode.kind.to_string(),
             per_rev: mode.per_rev.is_finite().then_some(mode.per_rev),
             hz: mode.frequency * nominal_rad_s / std::f64::consts::TAU,
             energy: [flap, lag, torsion, axial],
-        }
-    }
+            shape: question.shape_stations_r.iter().map(at).collect::<Result<_, FemError>>()?,
+        })
+    };
+    found.iter().map(line).collect()
 }
 
 /// `flap 1`, `flap 2`, ... `lag 1`, ...

@@ -8,18 +8,14 @@ use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
     CasePoints, Climb, Diagnosis, Findings, FolderStore, PAGE_FILE, PlanText, Planned,
     PointDiagnosis, PointStory, Question, Record, Records, Specimens, Stage, Story, bench_page,
-    climb, extended, plan, usual_runs,
+    both, climb, extended, model_or_case, plan, points_of, records_of, usual_runs,
 };
-use crate::files::{
-    DataSet, Folder, Source, SweepData, read_dataset, read_sweep, refuse_input, ron_text,
-    write_atomic,
-};
+use crate::files::{Folder, SweepData, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use bench_study::stored::{read_actuator, write_actuator};
-use measured_data::{Accuracy, DatasetKind, dataset_kind};
-use preisach_dyn::ActuatorModel;
+use bench_study::stored::write_actuator;
+use measured_data::Accuracy;
 use rotor_gap::{TableData, read_table};
 use std::path::{Path, PathBuf};
 
@@ -58,14 +54,6 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     let specimens = Specimens::of(&found);
     write_atomic(&output.join("specimens.json"), json(&specimens)?.as_bytes())?;
     print(&specimens.render(form)?)
-}
-
-/// The points of a folder; none of another kind of data.
-fn points_of(data: &Path) -> Result<Option<SweepData>, SimError> {
-    let folder = Folder::Disk(data.to_path_buf());
-    let kind = dataset_kind(&folder);
-    let is_of_points = |own: &DatasetKind| DatasetKind::OF_POINTS.iter().any(|of| of.0 == *own);
-    Ok(kind.filter(is_of_points).map(|kind| read_sweep(&folder, kind)).transpose()?)
 }
 
 /// Says what the simulation of a case lacks, from points of test.
@@ -110,7 +98,7 @@ fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
         let fault = Fault::Refused { message: message.to_owned() };
         Err(Problem::new(Place::file(file.display().to_string()), fault).into())
     };
-    let model = match given_model(path)? {
+    let model = match model_or_case(path)? {
         (Some(model), _) => Some(model),
         (None, case) => {
             case.map(|case| case_actuators(&case)).transpose()?.and_then(|own| own.real)
@@ -125,7 +113,8 @@ fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
     let usual = || usual_runs((model.range_volt.lowest_volt(), model.range_volt.highest_volt()));
     let (runs, accuracy) = match &args.runs {
         Some(folder) => {
-            let records = records_of(folder)?;
+            let (records, warnings) = records_of(folder)?;
+            warn(&warnings, Format::Text);
             if !records.is_bench {
                 return refused(folder, "a plan is of the runs of an actuator bench");
             }
@@ -161,7 +150,7 @@ fn found_in(
     output: &Path,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
-    let (model, case) = given_model(model)?;
+    let (model, case) = model_or_case(model)?;
     let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);
     let question = Question {
@@ -239,21 +228,11 @@ pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
     print(&ladder.render(format.form())?)
 }
 
-/// The runs to be explained and those that show the system as it is.
+/// The runs to be explained and those that show the system as it is; what is said of both is printed.
 fn both_records(data: &Path, args: &RecordsArgs) -> Result<(Records, Vec<Record>), SimError> {
-    let measured = records_of(data)?;
-    let reference = reference_runs(args.reference.as_deref(), data, &measured)?;
-    Ok((measured, reference))
-}
-
-/// The model of an actuator file; or the case.
-fn given_model(path: &Path) -> Result<(Option<ActuatorModel>, Option<LoadedCase>), SimError> {
-    let source = Source::read(path)?;
-    match read_actuator(&source) {
-        Ok(stored) => Ok((Some(stored.model), None)),
-        Err(problems) if source.text.contains("kind: Actuator") => Err(problems.into()),
-        Err(_) => Ok((None, Some(load_case(path)?))),
-    }
+    let given = both(data, args.reference.as_deref())?;
+    warn(&given.warnings, Format::Text);
+    Ok((given.measured, given.reference))
 }
 
 /// Writes a case with the extended actuator beside it, where no other file is named in it: their paths would
@@ -271,59 +250,4 @@ fn write_extended_case(case: &LoadedCase, output: &Path) -> Result<(), SimError>
     let path = output.join(EXTENDED_CASE_FILE);
     let text = ron_text(&own.case).map_err(|e| SimError::not_written(&path, &e))?;
     Ok(write_atomic(&path, text.as_bytes())?)
-}
-
-fn records_of(folder: &Path) -> Result<Records, SimError> {
-    let data = read_dataset(&Folder::Disk(folder.to_path_buf()))?;
-    warn(data.warnings(), Format::Text);
-    match &data {
-        DataSet::Bench(bench) => Ok(bench.into()),
-        DataSet::Loops(loops) => Ok(loops.into()),
-        DataSet::Sweep(sweep) => {
-            let place = Place::file(format!("{}/dataset.ron", sweep.folder)).field("kind");
-            let message = "points of a rotor are diagnosed alone, with a case: hhc diagnose CASE.ron --data DIR -o OUT";
-            Err(Problem::new(place, Fault::Refused { message: message.to_owned() }).into())
-        }
-        DataSet::Curves(curves) => {
-            let place = Place::file(format!("{}/dataset.ron", curves.folder)).field("kind");
-            let message =
-                "reversal curves hold no time: nothing dynamic can be diagnosed from them; \
-                           give an ActuatorBench or a GenericLoop"
-                    .to_owned();
-            Err(Problem::new(place, Fault::Refused { message }).into())
-        }
-    }
-}
-
-/// Reference runs: of the folder given, else those of the data, else of `../reference`. A folder in which no
-/// run has a role is one of reference runs.
-fn reference_runs(
-    given: Option<&Path>,
-    data: &Path,
-    measured: &Records,
-) -> Result<Vec<Record>, SimError> {
-    let folder = match given {
-        Some(folder) => folder.to_path_buf(),
-        None if measured.runs.iter().any(|run| run.is_reference) => return Ok(Vec::new()),
-        None => data.join("../reference"),
-    };
-    if given.is_none() && !folder.join("dataset.ron").is_file() {
-        return Ok(Vec::new());
-    }
-    let found = records_of(&folder)?;
-    if found.content_hash == measured.content_hash {
-        let place = Place::file(format!("{}/dataset.ron", folder.display()));
-        let message = "these are the measured runs themselves: reference runs show the actuator with nothing missing; \
-             give their folder, or none"
-            .to_owned();
-        return Err(Problem::new(place, Fault::Refused { message }).into());
-    }
-    let mut runs = found.runs;
-    if runs.iter().any(|run| run.is_reference) {
-        runs.retain(|run| run.is_reference);
-    }
-    for run in &mut runs {
-        run.is_reference = true;
-    }
-    Ok(runs)
 }

@@ -3,21 +3,19 @@
 use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
+use crate::actuator::{FoundModel, identified_data};
 use crate::actuator_use::{samples_csv, used};
 use crate::files::{
-    DATASET, DataSet, Folder, Source, read_dataset, refuse_inside, refuse_other_kind,
-    refuse_other_text, write_atomic,
+    DATASET, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, refuse_other_text,
+    write_atomic,
 };
 use crate::output::{Format, Printable, print};
-use crate::problem::{Fault, Place, Problem};
+use crate::problem::Place;
 use crate::progress::Progress;
 use actuator_gap::{ActuatorUse, UseError};
-use bench_study::BenchError;
-use bench_study::curves::{CurvesResult, identify_curves};
+use bench_study::curves::CurvesResult;
 use bench_study::figures::figure_files;
-use bench_study::identification::{
-    BenchIdentification, IdentifyResult, MODELS_COMPARED, identify_bench, identify_loops,
-};
+use bench_study::identification::{BenchIdentification, IdentifyResult, MODELS_COMPARED};
 use bench_study::page::{bench_page, curves_page};
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::EvenRecord;
@@ -64,11 +62,10 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     progress.begin(0, &format!("identifying from {} runs", data.run_count()));
     let [written, page_written_to] = [Some(&args.output), page_path.as_ref()]
         .map(|path| path.map(|path| path.display().to_string()));
-    let found = match &data {
-        DataSet::Curves(curves) => {
-            let found = identify_curves(curves);
-            progress.finish();
-            let found = found?;
+    let found = identified_data(&data, &base, Some(&|| progress.step()));
+    progress.finish();
+    let found = match found? {
+        FoundModel::Curves(found) => {
             let figures = args.figures.as_ref().map(|_| found.figure_files()).transpose()?;
             let result = CurvesResult { page_written_to, ..found.summary(written) };
             Identified {
@@ -78,20 +75,9 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
                 figures,
             }
         }
-        DataSet::Sweep(sweep) => {
-            let place = Place::file(format!("{}/dataset.ron", sweep.folder)).field("kind");
-            let message =
-                "points of a rotor identify no actuator: hhc diagnose CASE.ron --data DIR -o OUT"
-                    .to_owned();
-            return Err(Problem::new(place, Fault::Refused { message }).into());
-        }
-        DataSet::Bench(bench) => {
-            let found = identify_bench(bench, &base, Some(&|| progress.step()));
-            record_files(&picked(found, args, &progress)?, [written, page_written_to], args)?
-        }
-        DataSet::Loops(loops) => {
-            let found = identify_loops(loops, &base, Some(&|| progress.step()));
-            record_files(&picked(found, args, &progress)?, [written, page_written_to], args)?
+        FoundModel::Records(mut found) => {
+            found.pick(args.model)?;
+            record_files(&found, [written, page_written_to], args)?
         }
     };
     let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
@@ -169,16 +155,4 @@ fn record_files(
         text: result.render(args.format.form())?,
         figures,
     })
-}
-
-/// The identification with the model that is wanted in place.
-fn picked(
-    found: Result<BenchIdentification, BenchError>,
-    args: &IdentifyArgs,
-    progress: &Progress,
-) -> Result<BenchIdentification, SimError> {
-    progress.finish();
-    let mut found = found?;
-    found.pick(args.model)?;
-    Ok(found)
 }

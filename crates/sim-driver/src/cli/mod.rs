@@ -22,10 +22,12 @@ pub use args::{
 
 use crate::SimError;
 use crate::case::{InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case};
+use crate::choices::check_range;
 use crate::files::{refuse_input, write_atomic};
 use crate::output::{Format, warnings_text};
-use crate::problem::{Fault, Place, Problems};
+use crate::problem::Problems;
 use crate::progress::{is_quiet, set_quiet};
+use crate::sweep::at_advance_ratio;
 use clap::Parser;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
@@ -99,28 +101,29 @@ fn warn<T: Display>(warnings: &[T], format: Format) {
     eprint!("{}", warnings_text(warnings, format, "in the report, or with --details"));
 }
 
-/// Refuses a number of the command line that is out of its range.
-fn check_range(
-    problems: &mut Problems,
-    option: &str,
-    value: f64,
-    [low, high]: [f64; 2],
-    unit: &'static str,
-    remedy: &'static str,
-) {
-    if !(low..=high).contains(&value) {
-        problems.push(Place::file(option), Fault::OutOfRange { value, low, high, unit, remedy });
-    }
-}
-
 /// Whether the rotor can fly at an advance ratio of the command line.
 fn check_advance_ratio(problems: &mut Problems, mu: f64) {
     let remedy = "the attached-flow rotor model ends at 0.5; 0 is hover";
     check_range(problems, "--mu", mu, [0.0, 0.5], "", remedy);
 }
 
+/// The case at an advance ratio of the command line, if one is given.
+///
+/// # Errors
+/// An advance ratio at which the rotor cannot fly.
+pub fn moved_to(loaded: LoadedCase, mu: Option<f64>) -> Result<LoadedCase, SimError> {
+    let Some(mu) = mu else { return Ok(loaded) };
+    let mut problems = Problems::default();
+    check_advance_ratio(&mut problems, mu);
+    problems.into_result(Some(()))?;
+    Ok(at_advance_ratio(&loaded, mu))
+}
+
 /// The case of a file; the paper's if none is given.
-fn case_or_paper(path: Option<&PathBuf>) -> Result<LoadedCase, SimError> {
+///
+/// # Errors
+/// As [`load_case`].
+pub fn case_or_paper(path: Option<&PathBuf>) -> Result<LoadedCase, SimError> {
     Ok(path.map_or_else(|| shipped_case(PAPER_CASE), |path| load_case(path))?)
 }
 
@@ -142,7 +145,7 @@ fn write_texts<N: AsRef<Path>>(
 }
 
 /// The case in another inflow; a case with a free wake keeps its own where one is asked for.
-fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {
+pub fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> LoadedCase {
     let has_one = matches!(loaded.case.inflow.model, InflowChoice::FreeWake(_));
     if let Some(inflow) = inflow.filter(|i| !(has_one && *i == InflowOverride::Free)) {
         loaded.case.inflow.model = inflow.into();

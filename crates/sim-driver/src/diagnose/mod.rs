@@ -1,6 +1,7 @@
 //! `hhc diagnose`: a diagnosis of `actuator-gap` with the places of its errors, its cache on disk, its text and the ladder.
 
 mod cache;
+mod given;
 mod ladder;
 mod plan_text;
 mod points;
@@ -11,6 +12,7 @@ pub use actuator_gap::{
     Diagnosis, Plan, Planned, Proposal, Question, Record, Records, Stage, usual_runs,
 };
 pub use cache::FolderStore;
+pub use given::{GivenRecords, both, model_or_case, points_of, records_of};
 pub use ladder::{Climb, Ladder, Rung, climb};
 pub use model_gap::Findings;
 pub use plan_text::PlanText;

@@ -119,7 +119,7 @@ fn flight_error(loaded: &LoadedCase, source: FlightError) -> SimError {
 ///
 /// # Errors
 /// What its actuators are refused for; [`SimError::Flight`].
-pub(crate) fn leaving<T>(
+pub fn leaving<T>(
     loaded: &LoadedCase,
     of: fn(&Case, &ActuatorModel) -> Result<T, FlightError>,
 ) -> Result<(T, Vec<String>), SimError> {
