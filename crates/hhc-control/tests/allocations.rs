@@ -18,7 +18,7 @@ const WINDOW_REV: usize = 2;
 /// A loop of two flaps at 2 to 5/rev: its analyser of six loads, its controller within limits that bind, its T.
 fn flying() -> (HarmonicAnalyser, CycleController, TMatrix) {
     let layout = ControlLayout::new(2, vec![2, 3, 4, 5]).unwrap();
-    let column = |j: usize| (0..12).map(|i| (0.8 * i as f64 + 1.3 * j as f64).sin()).collect();
+    let column = |j: usize| (0..12).map(|i| (0.8 * f64::from(i) + 1.3 * j as f64).sin()).collect();
     let columns: Vec<Vec<f64>> = (0..layout.len()).map(column).collect();
     let t = TMatrix::from_columns(&columns).unwrap();
     let settings = RelaxedSettings {

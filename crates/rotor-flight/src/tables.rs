@@ -4,6 +4,7 @@ use crate::{
     DrawnCase, FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController, MarginStudy,
 };
 use rotor_study::HubLoads;
+use std::fmt::Write as _;
 
 /// Amplitudes of the six hub loads, N and N m, of cosine and sine parts in the units `m0 Omega^2 R^2` (N) and
 /// `m0 Omega^2 R^3` (N m).
@@ -105,7 +106,7 @@ pub fn draws_csv(drawn: &DrawnCase) -> String {
         "controller,time_s,j_over_j0_5_percent,j_over_j0_median,j_over_j0_95_percent\n".to_owned();
     for own in &drawn.controllers {
         for (time_s, [low, middle, high]) in &own.cycles {
-            text += &format!("{},{time_s},{low},{middle},{high}\n", own.controller);
+            let _ = writeln!(text, "{},{time_s},{low},{middle},{high}", own.controller);
         }
     }
     text
@@ -157,7 +158,7 @@ pub fn margins_csv(study: &MarginStudy) -> String {
                 .chain(point.radius.iter().copied())
                 .chain(point.whole_step_radius.iter().copied());
             let values: Vec<String> = each.map(number).collect();
-            text += &format!("{harmonics},{}\n", values.join(","));
+            let _ = writeln!(text, "{harmonics},{}", values.join(","));
         }
     }
     text
