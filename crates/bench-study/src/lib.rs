@@ -3,6 +3,7 @@
 //! | idea | module |
 //! |---|---|
 //! | identification from a bench or from loops of any two channels, the model chosen | [`identification`] |
+//! | from a data folder of any kind | [`any_data`] |
 //! | what a person checks at a glance of one record | [`Glance`] |
 //! | identification from reversal curves | [`curves`] |
 //! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
@@ -11,6 +12,7 @@
 //! | spectra of what a model leaves of its records | [`spectra`] |
 //! | the same as pictures on one page | [`page`] |
 
+pub mod any_data;
 pub mod curves;
 mod error;
 pub mod figures;

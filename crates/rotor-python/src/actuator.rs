@@ -6,6 +6,7 @@ use crate::arrays::{array, numbers};
 use crate::records::{Description, folder_of, same_count, step_of};
 use actuator_gap::{Commanded, StoredActuator};
 use bench_study::BenchError;
+use bench_study::any_data::{FoundModel, identified_data};
 use bench_study::identification::dataset_place;
 use bench_study::stored::{actuator_warnings, read_actuator, write_actuator};
 use measured_data::problem::Place;
@@ -13,7 +14,6 @@ use measured_data::{RonIndex, Source, read_dataset, refuse_other_kind};
 use preisach_dyn::identify::Settings;
 use pyo3::prelude::*;
 use sim_driver::SimError;
-use sim_driver::actuator::{FoundModel, identified_data};
 use sim_driver::choices::model_named;
 use std::path::PathBuf;
 

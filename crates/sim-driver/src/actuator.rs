@@ -2,13 +2,10 @@
 
 use crate::SimError;
 use crate::case::{ActuatorSource, LoadedCase};
-use crate::files::{BenchData, DataSet, Folder, RonIndex, Source, read_bench};
+use crate::files::{BenchData, Folder, RonIndex, Source, read_bench};
 use crate::problem::{Fault, Place, Problem};
 use bench_study::BenchError;
-use bench_study::curves::{CurveIdentification, identify_curves};
-use bench_study::identification::{
-    BenchIdentification, Compared, dataset_place, identify_bench, identify_loops,
-};
+use bench_study::identification::{BenchIdentification, dataset_place, identify_bench};
 use bench_study::stored::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
@@ -60,39 +57,6 @@ pub(crate) fn identified(folder: &Folder) -> Result<BenchActuator, SimError> {
     let data = read_bench(folder)?;
     let found = identify_bench(&data, &Settings::default(), None)?;
     Ok((data, found))
-}
-
-/// What was identified from a data folder.
-#[derive(Debug, Clone)]
-pub enum FoundModel {
-    /// From the runs of a bench or of two channels that loop.
-    Records(Box<BenchIdentification>),
-    /// From reversal curves.
-    Curves(Box<CurveIdentification>),
-}
-
-/// Identifies the model of a data folder of any kind that has one.
-///
-/// # Errors
-/// As [`identify_bench`], [`identify_loops`] and [`identify_curves`]; points of a rotor.
-pub fn identified_data(
-    data: &DataSet,
-    base: &Settings,
-    compared: Compared<'_>,
-) -> Result<FoundModel, SimError> {
-    let of_records = |found| FoundModel::Records(Box::new(found));
-    match data {
-        DataSet::Bench(bench) => Ok(of_records(identify_bench(bench, base, compared)?)),
-        DataSet::Loops(loops) => Ok(of_records(identify_loops(loops, base, compared)?)),
-        DataSet::Curves(curves) => Ok(FoundModel::Curves(Box::new(identify_curves(curves)?))),
-        DataSet::Sweep(sweep) => {
-            let place = dataset_place(&sweep.folder).field("kind");
-            let message =
-                "points of a rotor identify no actuator: hhc diagnose CASE.ron --data DIR -o OUT"
-                    .to_owned();
-            Err(Problem::new(place, Fault::Refused { message }).into())
-        }
-    }
 }
 
 /// Gets the actuators of a case: identifies, reads or makes them.

@@ -3,7 +3,6 @@
 use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
 use super::{refuse_inputs, warn, write_texts};
 use crate::SimError;
-use crate::actuator::{FoundModel, identified_data};
 use crate::actuator_use::{samples_csv, used};
 use crate::files::{
     DATASET, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, refuse_other_text,
@@ -13,6 +12,7 @@ use crate::output::{Format, Printable, print};
 use crate::problem::Place;
 use crate::progress::Progress;
 use actuator_gap::{ActuatorUse, UseError};
+use bench_study::any_data::{FoundModel, identified_data};
 use bench_study::curves::CurvesResult;
 use bench_study::figures::figure_files;
 use bench_study::identification::{BenchIdentification, IdentifyResult, MODELS_COMPARED};
