@@ -1,8 +1,5 @@
 //! `hhc fly`: the flight of a case in time, as table, CSV and page.
 
-mod draws;
-mod failures;
-mod margins;
 mod page;
 
 pub use page::flight_html;
@@ -17,7 +14,7 @@ use preisach_dyn::ActuatorModel;
 use report_page::Section;
 use rotor_flight::{
     DrawnCase, FailureStudy, FlightError, FlownCase, FlownController, FlyingCase, MarginStudy,
-    dissimilar_note, failures_of_case,
+    dissimilar_note, draws_section, failures_of_case, failures_section, margins_section,
 };
 use serde::Serialize;
 
@@ -209,13 +206,11 @@ impl Printable for FlightResult {
             sheet.paragraphs(note);
         }
         sheet.block(&self.summary().to_string());
-        let drawn = self.drawn.as_ref().map(draws::section);
-        let margins = self.margins.as_ref().map(margins::section);
-        for section in drawn.into_iter().chain(margins) {
+        let drawn = self.drawn.as_ref().map(draws_section);
+        let margins = self.margins.as_ref().map(margins_section);
+        let failures = self.failures.as_ref().map(failures_section);
+        for section in drawn.into_iter().chain(margins).chain(failures) {
             sheet.block(&section.to_string());
-        }
-        if let Some(study) = &self.failures {
-            sheet.block(&failures::section(study).to_string());
         }
         sheet.finish()
     }
