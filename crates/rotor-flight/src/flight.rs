@@ -110,9 +110,14 @@ impl Flight<'_> {
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
     pub(crate) fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
-        if self.handed_t.is_some() {
-            return Ok(Vec::new());
-        }
+        if self.handed_t.is_some() { Ok(Vec::new()) } else { self.own_steps() }
+    }
+
+    /// The same whatever is handed in.
+    ///
+    /// # Errors
+    /// As [`Self::steps`].
+    pub(crate) fn own_steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
         let settled = |control: usize, step_volt: f64| {
             let mut control_volt = self.layout.zero();
             control_volt[control] = step_volt;
@@ -140,6 +145,18 @@ impl Flight<'_> {
         if let Some(handed) = &self.handed_t {
             return Ok(handed.at(state.advance_ratio)?);
         }
+        self.own_t_in(state, steps)
+    }
+
+    /// T of rotor and actuators in a state, by central differences over settled [`Self::own_steps`].
+    ///
+    /// # Errors
+    /// As [`Self::t_in`].
+    pub(crate) fn own_t_in(
+        &self,
+        state: FlightState,
+        steps: &[[Vec<HarmonicSeries>; 2]],
+    ) -> Result<TMatrix, FlightError> {
         let column = |[up, down]: &[Vec<HarmonicSeries>; 2]| {
             let (up, down) = (self.path.loads(state, up)?, self.path.loads(state, down)?);
             let slope = |(up, down): (&f64, f64)| (up - down) / (2.0 * self.step_volt);

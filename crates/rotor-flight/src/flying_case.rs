@@ -66,6 +66,11 @@ impl<'a> FlyingCase<'a> {
         self.values
     }
 
+    /// Whether T is known for a control of some harmonics: it is, but where T is handed in for others alone.
+    pub(crate) fn knows_t_of(&self, harmonics: &[usize]) -> bool {
+        self.case.control.handed_t.as_ref().is_none_or(|handed| handed.set(harmonics).is_ok())
+    }
+
     /// The rotor along the schedule.
     pub fn path(&self) -> &RotorPath {
         &self.path

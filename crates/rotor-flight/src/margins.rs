@@ -60,7 +60,8 @@ pub struct MarginPoint {
 }
 
 impl FlyingCase<'_> {
-    /// How wrong T may be at every advance ratio of the rotor: a T that is held, the limits of the voltage left out.
+    /// How wrong T may be at every advance ratio of the rotor: a T that is held, the limits of the voltage left out. Where T is
+    /// handed in, it is that of the loop; the rotor answers as it does.
     ///
     /// # Errors
     /// [`FlightError`] of actuators, rotor and control.
@@ -68,7 +69,8 @@ impl FlyingCase<'_> {
         let all = &self.values().harmonics;
         let alone = all.iter().map(|&n| vec![n]);
         let together = (all.len() > 1).then(|| all.clone());
-        let sets = alone.chain(together).map(|harmonics| self.margin_set(harmonics));
+        let known = alone.chain(together).filter(|harmonics| self.knows_t_of(harmonics));
+        let sets = known.map(|harmonics| self.margin_set(harmonics));
         Ok(MarginStudy {
             gain: self.values().gain,
             advance_ratios: self.path().advance_ratios().to_vec(),
@@ -78,18 +80,16 @@ impl FlyingCase<'_> {
 
     fn margin_set(&self, harmonics: Vec<usize>) -> Result<MarginSet, FlightError> {
         let flight = self.flight_at(&harmonics)?;
-        let steps = flight.steps()?;
-        let t_at = |advance_ratio: f64| {
-            flight.t_in(FlightState { advance_ratio, thrust_share: 0.0 }, &steps)
-        };
+        let steps = flight.own_steps()?;
+        let at = |advance_ratio: f64| FlightState { advance_ratio, thrust_share: 0.0 };
+        let t_at = |mu: f64| flight.own_t_in(at(mu), &steps);
         let knots = self.path().advance_ratios();
         let each = knots.iter().map(|&mu| t_at(mu)).collect::<Result<Vec<TMatrix>, _>>()?;
         let (weights, rho, gain) =
             (&flight.settings.load_weights, flight.settings.effort_weight, flight.settings.gain);
-        let point = |(k, t): (usize, &TMatrix)| -> Result<MarginPoint, FlightError> {
-            let advance_ratio = knots[k];
-            let law = FeedbackLaw::new(t, weights)?;
-            let state = FlightState { advance_ratio, thrust_share: 0.0 };
+        let point = |(k, &advance_ratio): (usize, &f64)| -> Result<MarginPoint, FlightError> {
+            let state = at(advance_ratio);
+            let law = FeedbackLaw::new(&flight.t_in(state, &steps)?, weights)?;
             let baseline = flight.path.loads(state, &[])?;
             let found = law.margins(&flight.layout, rho, gain, &baseline)?;
             let loads = (0..HubLoads::NAMES.len())
@@ -120,7 +120,7 @@ impl FlyingCase<'_> {
                 ],
             })
         };
-        let points = each.par_iter().enumerate().map(point).collect::<Result<_, _>>()?;
+        let points = knots.par_iter().enumerate().map(point).collect::<Result<_, _>>()?;
         Ok(MarginSet { harmonics, points })
     }
 }

@@ -5,8 +5,9 @@ mod common;
 
 use common::actuator;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
-use rotor_flight::{Flight, FlyingCase, Guidance, MarginPoint, fly};
-use rotor_study::case::{Case, FlightController, FlightValues};
+use rotor_flight::{Flight, FlightState, FlyingCase, Guidance, MarginPoint, fly};
+use rotor_study::case::{Case, FlightController, FlightValues, HandedSet, HandedT};
+use std::sync::Arc;
 
 /// An ideal actuator whose voltage may grow for long.
 fn ideal() -> ActuatorModel {
@@ -79,6 +80,31 @@ fn a_t_of_one_speed_holds_as_far_as_its_flights_do() {
     println!("holds up to {end:.4}: flown {inside:.3} below and {outside:.3} above");
     assert!(slowest.holds_within[0].is_none() && (0.15..0.35).contains(&end));
     assert!(inside < 1.0 && outside > 1.0, "{inside} {outside}");
+}
+
+/// A T that is handed in is that of the loop, not of the rotor: one that is turned by 60 deg has the radius of theory.
+#[test]
+fn a_t_that_is_handed_in_meets_the_rotor_as_it_is() {
+    let (mut case, values) = (case(), FlightValues { knots: 2, ..values(&[3, 4]) });
+    let own = FlyingCase::new(&case, &values, &ideal()).unwrap();
+    let t_of = |advance_ratio: f64| {
+        let state = FlightState { advance_ratio, thrust_share: 0.0 };
+        let flight = own.flight_at(&[3]).unwrap();
+        let t = flight.identify(state).unwrap();
+        t.turned(1.0, f64::to_radians(60.0)).unwrap().columns()
+    };
+    let set = HandedSet {
+        harmonics: vec![3],
+        advance_ratios: vec![0.15, 0.35],
+        columns: vec![t_of(0.15), t_of(0.35)],
+    };
+    case.control.handed_t = Some(Arc::new(HandedT { sets: vec![set] }));
+    let values = FlightValues { harmonics: vec![3], ..values };
+    let study = FlyingCase::new(&case, &values, &ideal()).unwrap().margins().unwrap();
+    for (k, point) in study.sets[0].points.iter().enumerate() {
+        // |1 - exp(60 deg i)| = 1
+        assert!((point.whole_step_radius[k] - 1.0).abs() < 2e-3, "{point:?}");
+    }
 }
 
 /// The draws of every controller are those of the same seeds, and the spread is that of its flights.

@@ -7,6 +7,7 @@ use serde::Serialize;
 use sim_driver::SimError;
 use std::ffi::CString;
 use std::fmt::Display;
+use std::panic::AssertUnwindSafe;
 
 pyo3::create_exception!(
     rotor_hhc,
@@ -31,12 +32,16 @@ pub(crate) fn raised(py: Python<'_>, error: impl Into<SimError>) -> PyErr {
     }
 }
 
-/// Works while other threads of Python run, within the threads of the pool.
+/// What a panic is told as.
+const BUG: &str = "a bug of rotor_hhc stopped the call; please report it with what was called";
+
+/// Works while other threads of Python run. A panic is a bug, and an exception as any other.
 pub(crate) fn worked<T: Send>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, SimError> + Send,
 ) -> PyResult<T> {
-    py.detach(|| rayon::scope(|_| work())).map_err(|error| raised(py, error))
+    let done = py.detach(|| std::panic::catch_unwind(AssertUnwindSafe(work)));
+    done.map_err(|_| Error::new_err(BUG))?.map_err(|error| raised(py, error))
 }
 
 /// Warns as the command does, with the line of the caller.

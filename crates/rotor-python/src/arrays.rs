@@ -22,7 +22,19 @@ pub(crate) fn refused(name: &str, message: String) -> Problem {
 /// What NumPy says of what are no numbers; `rotor_hhc.Error` for another number of dimensions.
 pub(crate) fn numbers(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let py = given.py();
-    let array = py.import("numpy")?.call_method1("asarray", (given, "float64"))?;
+    let numpy = py.import("numpy")?;
+    let array = numpy.call_method1("asanyarray", (given,))?;
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    if !["f", "i", "u"].contains(&kind.as_str()) && array.len().is_ok_and(|count| count > 0) {
+        let kind = array.getattr("dtype")?.str()?.to_string();
+        let message = format!("an array of {kind}: give real numbers");
+        return Err(raised(py, refused(name, message)));
+    }
+    if numpy.getattr("ma")?.call_method1("is_masked", (&array,))?.extract()? {
+        let message = "a masked array: leave out what is masked, or fill it".to_owned();
+        return Err(raised(py, refused(name, message)));
+    }
+    let array = numpy.call_method1("asarray", (array, "float64"))?;
     let dimensions: usize = array.getattr("ndim")?.extract()?;
     if dimensions != 1 {
         let message = format!("an array of {dimensions} dimensions: give one of one dimension");

@@ -454,8 +454,13 @@ impl Problem<'_> {
                 Some(kept) => (kept, false),
                 None => (self.slope(solver, &x, &current)?, true),
             };
-            let singular = || TrimError::Singular { iteration, residual };
-            let step = -known.residuals.clone().lu().solve(&current.1).ok_or_else(singular)?;
+            let Some(step) = known.residuals.clone().lu().solve(&current.1).map(|step| -step)
+            else {
+                if !fresh {
+                    continue;
+                }
+                return Err(TrimError::Singular { iteration, residual });
+            };
             // a Newton step far from trim may not turn a control by more than 0.2 rad
             let largest = step.iter().take(5).fold(0.0_f64, |m, s| m.max(s.abs()));
             let step = step * (0.2 / largest.max(0.2));
@@ -523,7 +528,8 @@ impl Problem<'_> {
         let mut failure = None;
         for halvings in 0..=LARGEST_HALVINGS {
             let step = step * 0.5_f64.powi(halvings);
-            let predicted = slope.predicted(&current.0, &step)?;
+            let predicted = slope.predicted(&current.0, &step);
+            let predicted = predicted.unwrap_or_else(|_| current.0.clone());
             match self.after(solver, &(*x + &step), &current.0, &predicted) {
                 Ok(reached) if reached.1.norm() < norm => {
                     return Ok(Some(Gone { step, reached, predicted }));

@@ -322,9 +322,9 @@ impl LoadEstimator {
         // Z0 goes on from where the loads are
         for control in controls {
             let k = control + 1;
-            let scaled = self.last_volt[control] / self.settings.full_scale_volt;
+            let (volt, per_volt) = (self.last_volt[control], 1.0 / self.settings.full_scale_volt);
             for mut row in self.theta.row_iter_mut() {
-                row[0] += scaled * row[k];
+                row[0] += per_volt * (row[k] * volt);
                 row[k] = 0.0;
             }
             self.covariance.row_mut(k).fill(0.0);

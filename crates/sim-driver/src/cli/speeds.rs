@@ -152,6 +152,8 @@ impl SpeedRunner<'_> {
         let outcome = self.scope.added(here, outcome, &hidden)?;
         let figures = outcome.figures();
         store(here, &outcome, &figures, &folder_at(self.out, here.case.advance_ratio))?;
+        // looked at in its folder, but no result of a sweep
+        refuse_diverged(here, outcome.trimmed.wake_diverged())?;
         Ok(found_of(figures, here))
     }
 
