@@ -101,11 +101,9 @@ impl FlyingCase<'_> {
                     .collect()
             };
             let whole = |mu: f64| Ok(law.relaxed_spectral_radius(rho, 1.0, &t_at(mu)?)?);
-            let singular = law.singular_values();
-            let ends = singular.first().zip(singular.last());
             Ok(MarginPoint {
                 advance_ratio,
-                condition: ends.map_or(0.0, |(first, last)| first / last),
+                condition: law.condition(),
                 common_phase_deg: found.common_phase_deg,
                 common_gain: found.common_gain,
                 common_overshoot_deg: found.common_overshoot_deg,

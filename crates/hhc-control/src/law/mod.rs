@@ -157,6 +157,12 @@ impl FeedbackLaw {
         &self.singular_values
     }
 
+    /// The largest of them over the smallest; 0 where there is none.
+    pub fn condition(&self) -> f64 {
+        let ends = self.singular_values().first().zip(self.singular_values().last());
+        ends.map_or(0.0, |(first, last)| first / last)
+    }
+
     /// Whether there are more controls than loads, so that the optimum without a weight is one of many.
     pub fn has_surplus_controls(&self) -> bool {
         let (loads, controls) = self.shape();

@@ -358,11 +358,9 @@ impl<'a> Flights<'a> {
         let law = FeedbackLaw::new(&self.t0, load_weights)?;
         let layout = self.plant.layout();
         let found = law.margins(layout, *effort_weight, *gain, &self.baseline)?;
-        let singular = law.singular_values();
-        let ends = singular.first().zip(singular.last());
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
-            condition: ends.map_or(0.0, |(first, last)| first / last),
+            condition: law.condition(),
             common_phase_deg: found.common_phase_deg,
             common_gain: if found.common_gain.is_finite() { found.common_gain } else { 0.0 },
             common_overshoot_deg: found.common_overshoot_deg,
