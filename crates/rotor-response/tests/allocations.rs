@@ -1,4 +1,5 @@
-//! Memory taken by a residual of a revolution. Alone in its file: an allocator counts for the whole process.
+//! Memory taken by a residual of a revolution. Alone in its file: an allocator counts for the whole process. The thread that
+//! waits for the test takes some once, at any moment: each solution is counted three times and the least is judged.
 #![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -41,12 +42,15 @@ fn of_more_steps(span_points_per_piece: usize) -> (usize, usize) {
     let mut warm = solver(1e-11);
     let rest = warm.solve(&condition(0.0), &inflow, None).unwrap();
     let counted = [1e-3, 1e-6].map(|periodicity| {
-        let mut solver = solver(periodicity).with_matrix_of(&warm);
-        let region = Region::new(ALLOCATOR);
-        let found = solver.solve(&condition(0.05), &inflow, Some(&rest)).unwrap();
-        let taken = region.change();
-        assert_eq!(found.residuals.inflow_iterations, 1);
-        (found.residuals.response_iterations, taken.allocations + taken.reallocations)
+        let solved = [(); 3].map(|()| {
+            let mut solver = solver(periodicity).with_matrix_of(&warm);
+            let region = Region::new(ALLOCATOR);
+            let found = solver.solve(&condition(0.05), &inflow, Some(&rest)).unwrap();
+            let taken = region.change();
+            assert_eq!(found.residuals.inflow_iterations, 1);
+            (found.residuals.response_iterations, taken.allocations + taken.reallocations)
+        });
+        solved.into_iter().min().unwrap()
     });
     let [(few, of_few), (many, of_many)] = counted;
     (of_many - of_few, many - few)
