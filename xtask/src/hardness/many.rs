@@ -182,7 +182,10 @@ pub fn measure(
     many.alone = one[1].less(one[0]).times(1.0 / ALONE as f64);
     write_sweep(&place, "many.ron", cases)?;
     let run = arguments("many.ron", "out");
-    let before = killed(&place, &run, threads, cases)?;
+    let (before, met) = killed(&place, &run, threads, cases)?;
+    if !met {
+        many.faults.push("the sweep had ended before the kill".to_owned());
+    }
     let told = |action: &str| -> Result<Value, XtaskError> {
         let said =
             place.said(&["sweep", action, "many.ron", "--out", "out", "--format", "json"])?;
@@ -217,13 +220,13 @@ pub fn measure(
     Ok(many)
 }
 
-/// Runs the sweep until a part of its results is there, and kills it: the results that are there then.
+/// Runs the sweep until a part of its results is there, and kills it: the results that are there then, and whether it still ran.
 fn killed(
     place: &Place,
     run: &[&str],
     threads: usize,
     cases: usize,
-) -> Result<super::place::Files, XtaskError> {
+) -> Result<(super::place::Files, bool), XtaskError> {
     let failed = |source| XtaskError::Start { program: "hhc sweep run".to_owned(), source };
     let mut child =
         place.command(run).env("RAYON_NUM_THREADS", threads.to_string()).spawn().map_err(failed)?;
@@ -231,9 +234,10 @@ fn killed(
     while (results(place) as f64) < wanted.max(1.0) && child.try_wait().map_err(failed)?.is_none() {
         std::thread::sleep(LOOK);
     }
+    let met = child.try_wait().map_err(failed)?.is_none();
     child.kill().map_err(failed)?;
     child.wait().map_err(failed)?;
-    Ok(place.files("out"))
+    Ok((place.files("out"), met))
 }
 
 impl Many {
