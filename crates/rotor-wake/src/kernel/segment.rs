@@ -19,6 +19,11 @@ impl SegmentSet {
         Self { core, prepared: Vec::new(), single: Vec::new() }
     }
 
+    /// No segments yet, with room for so many.
+    pub(crate) fn with_room(core: CoreModel, segments: usize) -> Self {
+        Self { prepared: Vec::with_capacity(segments), ..Self::new(core) }
+    }
+
     /// Adds a segment from `start` to `end` with a circulation in the right-hand sense about that
     /// direction and the core radius there.
     pub fn push(&mut self, start: Vec3, end: Vec3, circulation: f64, core_radius: f64) {

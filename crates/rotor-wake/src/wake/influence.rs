@@ -284,17 +284,21 @@ impl CirculationSlope {
         if let Some(MotionSlope { coordinates, inflow: felt }) = &self.motion {
             inflow += felt * (coordinates * &inflow);
         }
-        let mut circulation = vec![0.0; inflow.len()];
+        // panel by panel, for the blocks are of panels
+        let azimuths = felt.len() / panels.max(1);
+        let at = |panel: usize, azimuth: usize| panel * azimuths + azimuth;
+        let mut of_panels = vec![0.0; felt.len()];
         for (from, to, block) in &self.blocks {
+            let sums = &mut of_panels[at(*from, 0)..at(*from + 1, 0)];
             for (k, column) in block.column_iter().enumerate() {
                 let change = inflow[k * panels + to];
-                let rows = circulation.iter_mut().skip(*from).step_by(panels);
-                for (sum, slope) in rows.zip(&column) {
+                for (sum, slope) in sums.iter_mut().zip(&column) {
                     *sum += slope * change;
                 }
             }
         }
-        circulation
+        let order = (0..azimuths).flat_map(|k| (0..panels).map(move |panel| at(panel, k)));
+        order.map(|at| of_panels[at]).collect()
     }
 }
 
@@ -331,7 +335,6 @@ impl FrozenWake {
         let reference = induction.inflow(circulation)?;
         let (azimuths, panels) = (induction.azimuths, induction.rotor.panels());
         let size = azimuths * panels;
-        let [mut map, along] = induction.matrices();
         let (pitches, expected) = (slope.pitch_rad.len(), "azimuths times panels of the wake");
         ensure(
             pitches == size,
@@ -339,11 +342,7 @@ impl FrozenWake {
             pitches as f64,
             expected,
         )?;
-        for (mut row, (of_along, pitch)) in
-            map.row_iter_mut().zip(along.row_iter().zip(&slope.pitch_rad))
-        {
-            row -= of_along * *pitch;
-        }
+        let map = induction.down.less(&induction.along, &slope.pitch_rad);
         let mut newton = DMatrix::identity(size, size);
         for (from, to, block) in &slope.blocks {
             let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);

@@ -277,7 +277,7 @@ pub(crate) struct Sources(Vec<Source>);
 impl Sources {
     /// What the blades feel: lifting lines, the full span of the near wake, the rolled-up vortices behind it.
     pub(crate) fn of_loads(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
-        let mut out = Self::default();
+        let mut out = Self::with_room(views, context);
         for view in views {
             out.bound(view, context);
             out.chords(view, context, |n| context.trailer_radius(n, view.past, 0));
@@ -293,7 +293,7 @@ impl Sources {
     pub(crate) fn of_geometry(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
         let core = &context.settings.core;
         let free = context.settings.near_wake_motion == NearWakeMotion::Free;
-        let mut out = Self::default();
+        let mut out = Self::with_room(views, context);
         for view in views {
             out.bound(view, context);
             if free {
@@ -307,6 +307,17 @@ impl Sources {
             }
         }
         out
+    }
+
+    /// None yet, with room for all that the blades and their wakes can have.
+    fn with_room(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
+        let SourceContext { settings, .. } = context;
+        let of = |BladeView { line, near, far, .. }: &BladeView<'_>| {
+            let ages =
+                far.iter().map(|points| points.len() + settings.far_turns * settings.azimuths);
+            2 * line.len() + 2 * near.len() * settings.near_steps() + ages.sum::<usize>()
+        };
+        Self(Vec::with_capacity(views.iter().map(of).sum()))
     }
 
     /// How the strength of a segment depends on the circulation.
@@ -331,7 +342,7 @@ impl Sources {
 
     /// For the kernel, all of unit strength and in double precision.
     pub(crate) fn unit_segments(&self, context: &SourceContext<'_>) -> SegmentSet {
-        let mut set = SegmentSet::new(context.settings.core.model);
+        let mut set = SegmentSet::with_room(context.settings.core.model, self.0.len());
         for Source { ends: [start, end], radius, .. } in &self.0 {
             set.push(*start, *end, 1.0, *radius);
         }
