@@ -10,6 +10,16 @@ pub enum SweepError {
     /// The sweep file has problems, or a result cannot be written.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A file that a case names changed, or can no longer be read, since the sweep was planned: the case keeps no result.
+    #[error(
+        "case {case}: a file that it names changed since the sweep was planned{said}; what was computed of it is not kept. Leave the files alone, and run again: results that are there stay"
+    )]
+    Changed {
+        /// Key of the case, its first digits.
+        case: String,
+        /// What is wrong with a file now, behind a colon; nothing if all can be read.
+        said: String,
+    },
     /// Results are missing, damaged, or of no case of the sweep.
     #[error("{}", .0.join("\n"))]
     Incomplete(Vec<String>),

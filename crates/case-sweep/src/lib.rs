@@ -34,7 +34,7 @@ pub use file::{Axis, AxisValues, Sampling, SweepFile, read_sweep_file};
 pub use merge::{Merged, MergedCase, merge};
 pub use page::PageChoice;
 pub use plan::{Plan, PlannedCase, plan};
-pub use run::{Done, Pace, Ran, run};
+pub use run::{Done, Failed, Pace, Ran, run};
 pub use shard::{Shard, array_script};
 pub use status::{Status, status};
 pub use store::{Cell, Outcome, State, Store, StoredCase, case_key};
@@ -65,7 +65,7 @@ pub struct Found {
 /// Why a case has no numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NoNumbers {
-    /// It has none, in words why: the same case fails the same way, which is its result.
+    /// It has none, in words why: the same case with the same files fails the same way, which is its result.
     Failed(String),
     /// The place where it runs is at fault, such as a full disk: the sweep ends, and the case stays without a result.
     Stopped(DataError),

@@ -1,6 +1,6 @@
 //! Running what is missing, on all threads.
 
-use crate::store::{Outcome, State, Store, StoredCase};
+use crate::store::{Outcome, State, Store, StoredCase, case_key};
 use crate::{Found, NoNumbers, Plan, PlannedCase, ReadCase, Runner, Shard, SweepError};
 use serde::Serialize;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -54,15 +54,24 @@ impl std::fmt::Display for Pace {
     }
 }
 
+/// What becomes of cases that failed before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Failed {
+    /// They are left: the same case fails the same way.
+    Left,
+    /// They are computed again, as after a fault of the program was mended.
+    Again,
+}
+
 /// Runs the cases of a part that have no whole result yet. `done` is told of every case, from one thread at a time.
 ///
 /// A case runs on one thread; fewer cases than threads share the threads out. No result depends on it.
 ///
 /// # Errors
-/// A result that cannot be written, and a case that was stopped. Failed cases are results.
+/// A result that cannot be written, a case that was stopped, and one whose files changed meanwhile. Failed cases are results.
 pub fn run<R: Runner>(
     plan: &Plan,
-    shard: Shard,
+    (shard, before): (Shard, Failed),
     store: &Store,
     runner: &R,
     done: &(dyn Fn(Done) + Sync),
@@ -73,7 +82,7 @@ pub fn run<R: Runner>(
     for case in part {
         match store.get(&case.key) {
             (State::Found, _) => ran.skipped += 1,
-            (State::Failed, stored) => {
+            (State::Failed, stored) if before == Failed::Left => {
                 ran.skipped += 1;
                 ran.failed.extend(stored.and_then(|stored| reason(&case.key, &stored.outcome)));
             }
@@ -129,6 +138,7 @@ fn reason(key: &str, outcome: &Outcome) -> Option<(String, String)> {
     }
 }
 
+/// Runs a case. Its files must be those of its key before and after: a result under a key of other files would be a wrong one.
 fn run_case<R: Runner>(
     plan: &Plan,
     planned: &PlannedCase,
@@ -136,29 +146,28 @@ fn run_case<R: Runner>(
 ) -> Result<StoredCase, SweepError> {
     let version = runner.version().to_owned();
     let text = plan.text(&planned.values, runner).unwrap_or_default();
-    let read = match &planned.refused {
-        Some(refused) => Err(refused.clone()),
-        None => runner.read(&text).map_err(|problems| problems.to_string()),
-    };
-    match read {
-        Ok(ReadCase { canonical, inputs, case }) => {
-            let found = catch_unwind(AssertUnwindSafe(|| runner.run(case)));
-            let outcome = match found {
-                Ok(Ok(Found { columns, warnings })) => Outcome::Found { columns, warnings },
-                Ok(Err(NoNumbers::Failed(reason))) => Outcome::Failed { reason },
-                Ok(Err(NoNumbers::Stopped(error))) => return Err(error.into()),
-                Err(_) => {
-                    let reason = "a bug of the program stopped the case; please report it";
-                    Outcome::Failed { reason: reason.to_owned() }
-                }
-            };
-            Ok(StoredCase { version, inputs, case: canonical, outcome })
-        }
-        Err(reason) => {
-            let outcome = Outcome::Failed { reason };
-            Ok(StoredCase { version, inputs: vec![], case: text, outcome })
-        }
+    if let Some(reason) = planned.refused.clone() {
+        let outcome = Outcome::Failed { reason };
+        return Ok(StoredCase { version, inputs: vec![], case: text, outcome });
     }
+    let read = || -> Result<ReadCase<R::Case>, SweepError> {
+        let changed = |said| SweepError::Changed { case: planned.key[..12].to_owned(), said };
+        let read = runner.read(&text).map_err(|problems| changed(format!(": {problems}")))?;
+        let is_planned = case_key(&version, &read.canonical, &read.inputs) == planned.key;
+        is_planned.then_some(read).ok_or_else(|| changed(String::new()))
+    };
+    let ReadCase { canonical, inputs, case } = read()?;
+    let found = catch_unwind(AssertUnwindSafe(|| runner.run(case)));
+    let outcome = match found {
+        Ok(Ok(Found { columns, warnings })) => Outcome::Found { columns, warnings },
+        Ok(Err(NoNumbers::Failed(reason))) => Outcome::Failed { reason },
+        Ok(Err(NoNumbers::Stopped(error))) => return Err(error.into()),
+        Err(_) => Outcome::Failed {
+            reason: "a bug of the program stopped the case; please report it, and run with --retry-failed once it is mended".to_owned(),
+        },
+    };
+    read()?;
+    Ok(StoredCase { version, inputs, case: canonical, outcome })
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! A sweep over a toy whose cases are numbers, from the file to the table.
 
 use crate::{
-    Cell, Found, Merged, NoNumbers, Plan, ReadCase, Runner, Shard, State, Store, SweepError, merge,
-    plan, read_sweep_file, run, status,
+    Cell, Failed, Found, Merged, NoNumbers, Plan, ReadCase, Runner, Shard, State, Store,
+    SweepError, merge, plan, read_sweep_file, run, status,
 };
 use measured_data::problem::{Fault, Problems};
 use measured_data::{DataError, Folder, Source, read_ron, ron_text, write_atomic};
 use proptest::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,6 +38,12 @@ const BASE: &str = "(low: 1.0, high: 2.0, count: 3, form: Round)";
 #[derive(Default)]
 struct ToyRunner {
     runs: AtomicUsize,
+    /// How often the file that a case names was written anew.
+    written: AtomicUsize,
+    /// That file is gone.
+    gone: AtomicBool,
+    /// What ends the case of count 15 is mended.
+    mended: bool,
 }
 
 impl Runner for ToyRunner {
@@ -60,10 +66,14 @@ impl Runner for ToyRunner {
             if toy.low >= toy.high {
                 refuse("high", format!("is {}, expected more than low {}", toy.high, toy.low));
             }
+            if self.gone.load(Ordering::Relaxed) {
+                refuse("form", "cannot be read".to_owned());
+            }
         }
         let toy = problems.into_result(read.value)?;
         let canonical = ron_text(&toy).unwrap_or_default();
-        Ok(ReadCase { canonical, inputs: vec!["input".into()], case: toy })
+        let input = format!("input {}", self.written.load(Ordering::Relaxed));
+        Ok(ReadCase { canonical, inputs: vec![input], case: toy })
     }
 
     fn unit(&self, toy: &Toy, field: &str) -> Option<String> {
@@ -85,7 +95,9 @@ impl Runner for ToyRunner {
             let (path, reason) = ("numbers".into(), "the disk is full".into());
             return Err(NoNumbers::Stopped(DataError::NotWritten { path, reason }));
         }
-        assert_ne!(toy.count, 15, "a bug of the toy");
+        self.written.fetch_add(usize::from(toy.count == 19), Ordering::Relaxed);
+        self.gone.fetch_or(toy.count == 21, Ordering::Relaxed);
+        assert!(toy.count != 15 || self.mended, "a bug of the toy");
         let value = (toy.low * toy.high).sqrt() / toy.count as f64;
         let edge = if let Form::Square(side) = &toy.form { side.edge } else { f64::NAN };
         let columns = vec![("mean_m".to_owned(), value.into()), ("edge_m".to_owned(), edge.into())];
@@ -109,7 +121,8 @@ const TWELVE: &str =
     "(field: \"high\", from: 2, to: 3, count: 4), (field: \"count\", values: [1, 2, 13])";
 
 fn ran(plan: &Plan, shard: &str, store: &Store) -> crate::Ran {
-    run(plan, Shard::parse(shard).unwrap(), store, &ToyRunner::default(), &|_| {}).unwrap()
+    let part = (Shard::parse(shard).unwrap(), Failed::Left);
+    run(plan, part, store, &ToyRunner::default(), &|_| {}).unwrap()
 }
 
 /// Layout, comments and order of the base do not matter, nor how a value is written; what is varied does.
@@ -229,11 +242,51 @@ fn a_case_that_was_stopped_has_no_result() {
     let place = tempfile::tempdir().unwrap();
     let store = Store::new(place.path());
     for _ in 0..2 {
-        let ended = run(&plan, Shard::WHOLE, &store, &ToyRunner::default(), &|_| {});
+        let part = (Shard::WHOLE, Failed::Left);
+        let ended = run(&plan, part, &store, &ToyRunner::default(), &|_| {});
         assert!(ended.unwrap_err().to_string().contains("the disk is full"));
     }
     let status = status(&store, &plan);
     assert_eq!(status.missing, [plan.cases[1].key.clone()]);
+}
+
+/// A file that changes or goes between the plan and the end of a case: no result, under any key, and no failed case.
+#[test]
+fn a_case_whose_files_change_has_no_result() {
+    for (count, said) in [(19, "since the sweep was planned;"), (21, "form: cannot be read")] {
+        let plan = swept(&format!("(field: \"count\", values: [1, {count}, 2])"));
+        let place = tempfile::tempdir().unwrap();
+        let store = Store::new(place.path());
+        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+        let runner = ToyRunner::default();
+        let again = || run(&plan, (Shard::WHOLE, Failed::Left), &store, &runner, &|_| {});
+        // the second run finds the files changed before it begins
+        for runs in [2, 2] {
+            let error = one.install(again).unwrap_err().to_string();
+            assert!(error.contains(said) && error.contains("run again"), "{error}");
+            assert!(error.starts_with(&format!("case {}", &plan.cases[1].key[..12])), "{error}");
+            assert_eq!(runner.runs.load(Ordering::Relaxed), runs);
+        }
+        let status = status(&store, &plan);
+        assert_eq!((status.found, status.failed.len(), status.missing.len()), (1, 0, 2));
+        assert!(status.foreign.is_empty(), "{status:?}");
+    }
+}
+
+/// What failed is left, or computed again if that is asked for.
+#[test]
+fn failed_cases_are_computed_again_when_asked_for() {
+    let plan = swept("(field: \"count\", values: [1, 13, 15])");
+    let place = tempfile::tempdir().unwrap();
+    let store = Store::new(place.path());
+    assert_eq!(ran(&plan, "1/1", &store).failed.len(), 2);
+    let mended = ToyRunner { mended: true, ..ToyRunner::default() };
+    let again = |failed| run(&plan, (Shard::WHOLE, failed), &store, &mended, &|_| {}).unwrap();
+    let left = again(Failed::Left);
+    assert_eq!((left.computed, left.skipped, left.failed.len()), (0, 3, 2));
+    let once_more = again(Failed::Again);
+    assert_eq!((once_more.computed, once_more.skipped, once_more.failed.len()), (2, 1, 1));
+    assert_eq!(status(&store, &plan).found, 2);
 }
 
 /// Shards in any order, thread counts, one process: the same bytes.

@@ -79,6 +79,8 @@ impl CaseRunner {
             return Ok(Some(found.clone()));
         }
         let found = Arc::new(identified(&folder)?);
+        // what was identified, whatever was read for the key before
+        lock(&self.hashes).insert(name.clone(), found.0.content_hash.clone());
         actuators.insert(name, found.clone());
         Ok(Some(found))
     }

@@ -68,7 +68,11 @@ impl Scope {
     }
 }
 
-/// Writes everything a run leaves behind.
+/// Files that every run leaves beside its result.
+pub(super) const ALWAYS: [&str; 5] =
+    ["blade_loads.csv", "airloads.csv", "tip.csv", "histories.csv", "report.html"];
+
+/// Writes everything a run leaves behind; what an earlier run has left and this one has not goes.
 pub(super) fn store(
     loaded: &LoadedCase,
     outcome: &RunOutcome,
@@ -82,11 +86,11 @@ pub(super) fn store(
     let airloads = airloads_csv(&outcome.airloads);
     write_atomic(&out.join("airloads.csv"), airloads.as_bytes())?;
     write_atomic(&out.join("tip.csv"), tip_csv(&outcome.tip).as_bytes())?;
-    if let Some(WakeTrim { wake, .. }) = outcome.trimmed.wake() {
+    let vortices = outcome.trimmed.wake().map(|WakeTrim { wake, .. }| {
         let (planes, radius_m) = (loaded.case.vortex_planes_y_r(), loaded.case.rotor.radius_m);
-        let vortices = vortices_csv(wake, &planes, radius_m);
-        write_atomic(&out.join("vortices.csv"), vortices.as_bytes())?;
-    }
+        vortices_csv(wake, &planes, radius_m)
+    });
+    write_or_remove(&out.join("vortices.csv"), vortices)?;
     write_shown(&StudyReport { stored: &stored, figures }, out)?;
     Ok(stored)
 }
@@ -94,29 +98,37 @@ pub(super) fn store(
 /// Writes what follows from a stored result: tables, picture and report.
 pub(super) fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), SimError> {
     let StudyReport { stored, figures } = *report;
-    let write = |name: &str, text: &str| write_atomic(&out.join(name), text.as_bytes());
-    write("histories.csv", &histories_csv(&stored.result.control))?;
-    if !figures.sensitivity.is_empty() {
-        let harmonics = &stored.case.control.harmonics;
-        write("sensitivity.csv", &sensitivity_csv(harmonics, &figures.sensitivity))?;
-    }
-    if !stored.result.robustness.is_empty() {
-        write("robustness.csv", &robustness_csv(&stored.result.robustness))?;
-    }
-    if !figures.costs.is_empty() {
-        write("costs.csv", &costs_csv(&figures.costs))?;
-    }
-    if figures.fronts.iter().any(|line| !line.points.is_empty()) {
-        write("fronts.csv", &fronts_csv(&figures.fronts))?;
-    }
-    if stored.result.measured.is_some() {
-        write("measured.csv", &measured_csv(figures))?;
-    }
+    let (result, case) = (&stored.result, &stored.case);
     let finding = report.finding();
-    if finding.is_drawn() {
-        write("figure.svg", &finding.svg(&stored.case.title))?;
+    let swept = |table: &[_]| sensitivity_csv(&case.control.harmonics, table);
+    let has_front = figures.fronts.iter().any(|line| !line.points.is_empty());
+    let files = [
+        ("histories.csv", Some(histories_csv(&result.control))),
+        ("sensitivity.csv", filled(&figures.sensitivity).map(swept)),
+        ("robustness.csv", filled(&result.robustness).map(robustness_csv)),
+        ("costs.csv", filled(&figures.costs).map(costs_csv)),
+        ("fronts.csv", has_front.then(|| fronts_csv(&figures.fronts))),
+        ("measured.csv", result.measured.is_some().then(|| measured_csv(figures))),
+        ("figure.svg", finding.is_drawn().then(|| finding.svg(&case.title))),
+        ("report.html", Some(report_html(report))),
+    ];
+    files.into_iter().try_for_each(|(name, text)| write_or_remove(&out.join(name), text))
+}
+
+/// A table, unless it has no row.
+fn filled<T>(rows: &[T]) -> Option<&[T]> {
+    (!rows.is_empty()).then_some(rows)
+}
+
+/// Writes a file; without a text, one that an earlier run has left goes.
+fn write_or_remove(path: &Path, text: Option<String>) -> Result<(), SimError> {
+    match text {
+        Some(text) => Ok(write_atomic(path, text.as_bytes())?),
+        None if path.is_file() => {
+            std::fs::remove_file(path).map_err(|error| SimError::not_written(path, &error))
+        }
+        None => Ok(()),
     }
-    Ok(write("report.html", &report_html(report))?)
 }
 
 /// Says of a run that failed that the results in its folder are not its own.

@@ -1,7 +1,7 @@
 //! `hhc run --mu`: a case over advance ratios. It is a sweep of one axis, with the whole result of every case in a folder of its own.
 
 use super::case_runner::{CaseRunner, found_of, no_numbers};
-use super::left::{Scope, note_earlier, store};
+use super::left::{ALWAYS, Scope, note_earlier, store};
 use super::sweep::{merged_files, run_shown};
 use super::{check_advance_ratio, warn, write_texts};
 use crate::SimError;
@@ -15,8 +15,8 @@ use crate::results::{Figures, StoredResult, figures};
 use crate::run::run_trimmed;
 use crate::sweep::{SweepResult, SweepRow, at_advance_ratio, continued_trim, refuse_diverged};
 use case_sweep::{
-    Axis, AxisValues, Found, NoNumbers, Outcome, ReadCase, Runner, Sampling, Shard, State, Store,
-    SweepFile, merge, plan,
+    Axis, AxisValues, Failed, Found, NoNumbers, Outcome, ReadCase, Runner, Sampling, Shard, State,
+    Store, SweepFile, merge, plan,
 };
 use rotor_study::WakeStatus;
 use std::path::{Path, PathBuf};
@@ -58,7 +58,7 @@ pub(super) fn run_speeds(
             kept.forget(&case.key)?;
         }
     }
-    let ran = run_shown(&planned, Shard::WHOLE, &kept, &runner)?;
+    let ran = run_shown(&planned, (Shard::WHOLE, Failed::Again), &kept, &runner)?;
     let (mut rows, mut failed) = (Vec::new(), Vec::new());
     for (mu, case) in cases() {
         if let Some(result) = runner.whole(mu) {
@@ -160,9 +160,11 @@ impl SpeedRunner<'_> {
     /// The figures of the result in the folder of an advance ratio, if it is whole, and of this case and scope.
     fn whole(&self, advance_ratio: f64) -> Option<Figures> {
         let here = at_advance_ratio(self.loaded, advance_ratio);
-        let stored = StoredResult::read(&folder_at(self.out, advance_ratio)).ok()?;
+        let folder = folder_at(self.out, advance_ratio);
+        let stored = StoredResult::read(&folder).ok()?;
+        let is_there = ALWAYS.iter().all(|name| folder.join(name).is_file());
         let is_own = stored.is_of(&here.case, &self.cases.inputs(&here).ok()?);
-        if !(is_own && self.scope.is_of(&stored.result)) {
+        if !(is_there && is_own && self.scope.is_of(&stored.result)) {
             return None;
         }
         Some(figures(&stored.result, &stored.setting().ok()?))

@@ -10,8 +10,8 @@ use crate::problem::Problem;
 use crate::progress::{Progress, is_quiet};
 use crate::results::{RESULT_FILE, from_json};
 use case_sweep::{
-    Done, Merged, Pace, PageChoice, Plan, Ran, Runner, Shard, Store, array_script, merge, plan,
-    read_sweep_file, run, status,
+    Done, Failed, Merged, Pace, PageChoice, Plan, Ran, Runner, Shard, Store, array_script, merge,
+    plan, read_sweep_file, run, status,
 };
 use clap::{Args, Subcommand};
 use std::io::IsTerminal;
@@ -31,6 +31,9 @@ pub enum SweepAction {
         /// Part of the cases; in a Slurm array the part of the task, if left out.
         #[arg(long, value_name = "I/N")]
         shard: Option<String>,
+        /// Compute failed cases again, as after a fault of the program was mended.
+        #[arg(long)]
+        retry_failed: bool,
     },
     /// Count what is done, failed, damaged, missing and foreign.
     Status(SweepArgs),
@@ -119,10 +122,11 @@ impl SweepArgs {
 pub(super) fn sweep(action: &SweepAction) -> Result<(), SimError> {
     match action {
         SweepAction::Plan(args) => show_plan(&Sweep::of(args)?, args.format),
-        SweepAction::Run { sweep, shard } => {
+        SweepAction::Run { sweep, shard, retry_failed } => {
             let part = shard.as_deref().map_or_else(task_of_array, Shard::parse)?;
             refuse_unwritable(&sweep.out())?;
-            run_part(&Sweep::of(sweep)?, part, sweep.format)
+            let failed = if *retry_failed { Failed::Again } else { Failed::Left };
+            run_part(&Sweep::of(sweep)?, (part, failed), sweep.format)
         }
         SweepAction::Status(args) => show_status(&Sweep::of(args)?, args.format),
         SweepAction::Merge { sweep, partial } => write_merged(&Sweep::of(sweep)?, *partial),
@@ -188,7 +192,7 @@ fn show_plan(sweep: &Sweep, format: Format) -> Result<(), SimError> {
 /// Time between two lines of a log, s.
 const LOG_EVERY: Duration = Duration::from_secs(30);
 
-fn run_part(sweep: &Sweep, part: Shard, format: Format) -> Result<(), SimError> {
+fn run_part(sweep: &Sweep, part: (Shard, Failed), format: Format) -> Result<(), SimError> {
     let ran = run_shown(&sweep.plan, part, &sweep.store, &sweep.runner)?;
     print(&if format == Format::Json { json(&ran)? } else { ran_text(&ran, &sweep.out) })
 }
@@ -197,7 +201,7 @@ fn run_part(sweep: &Sweep, part: Shard, format: Format) -> Result<(), SimError> 
 #[expect(clippy::disallowed_methods, reason = "rate and time left are shown, not stored")]
 pub(super) fn run_shown<R: Runner>(
     plan: &Plan,
-    part: Shard,
+    part: (Shard, Failed),
     store: &Store,
     runner: &R,
 ) -> Result<Ran, SimError> {
