@@ -53,6 +53,12 @@ fn the_means_at_low_speed_do_not_know_how_the_march_began() {
     assert!(a.balanced && b.balanced, "{:?} {:?}", a.residuals, b.residuals);
     let (inflows, collectives) =
         ([&a.mean_inflow, &b.mean_inflow], [&a.asked_for[0], &b.asked_for[0]]);
+    for (i, (a, b)) in a.at_blade_number.iter().zip(&b.at_blade_number).enumerate() {
+        println!("at nb {i}: {a:?} {b:?}");
+    }
+    for (i, (a, b)) in a.amplitudes.iter().zip(&b.amplitudes).enumerate() {
+        println!("amp {i}: {a:?} {b:?}");
+    }
     for [a, b] in [inflows, collectives] {
         let (off, most) = ((a.mean - b.mean).abs(), interval(a, b));
         assert!(off < most && most < 0.05 * a.mean, "{a:?} {b:?}");

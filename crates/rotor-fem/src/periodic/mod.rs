@@ -2,6 +2,7 @@
 
 pub(crate) mod acceleration;
 pub(crate) mod error;
+pub(crate) mod krylov;
 pub(crate) mod linear_response;
 pub(crate) mod newton_matrix;
 pub(crate) mod orbit_memory;

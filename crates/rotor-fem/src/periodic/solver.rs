@@ -6,6 +6,7 @@ use nalgebra::DMatrix;
 
 use crate::error::check_parameters;
 use crate::periodic::acceleration::Anderson;
+use crate::periodic::krylov;
 use crate::periodic::newton_matrix::Factorisation;
 use crate::periodic::renewal::{Renewal, Verdict};
 use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeElements};
@@ -13,6 +14,8 @@ use crate::{FemError, Orbit, OrbitSamples, PeriodicError, PeriodicSystem, TimeEl
 /// Steps of a careful search in which the best residual has to fall, and to what part of it: one that does not
 /// goes nowhere.
 const STANDSTILL: (usize, f64) = (30, 0.5);
+/// Change of the orbit, largest entry, over which a careful search takes the derivative of the residual.
+const SLOPE_STEP: f64 = 1e-6;
 /// Halvings of a step that makes the residual grow.
 const MAX_HALVINGS: i32 = 6;
 
@@ -83,9 +86,10 @@ fn stands_still(history: &[f64], careful_from: Option<usize>) -> bool {
 /// integral( -N_a' M q' + N_a f ) dpsi = 0   for every node a
 /// ```
 /// The Newton matrix is factorised once and used for chord steps, also in later solves, until a step
-/// contracts the residual too little; when chord steps stall, the search goes back to the best orbit and
-/// takes Newton steps, shortened until the residual falls, and ends where thirty of them do not halve it. The sequence of solves is therefore part of the result at the
-/// level of the tolerance: use one solver per thread, or a new one for every solve.
+/// contracts the residual too little. When chord steps stall, the search goes back to the best orbit and
+/// turns careful: it takes Newton steps with the true derivative of the residual along each direction, for the tangent of a system
+/// may be incomplete, shortens them until the residual falls, and ends where thirty of them do not halve it. The sequence of
+/// solves is therefore part of the result at the level of the tolerance: use one solver per thread, or a new one for every solve.
 ///
 /// Assumes: a constant symmetric mass matrix; period 2 pi.
 /// Not modelled: stability of the orbit, which is for [`Floquet`](crate::Floquet).
@@ -212,7 +216,10 @@ impl PeriodicSolver {
                 mixing.clear();
                 Arc::new(self.factorise(system, &state, iteration - 1)?)
             };
-            let step = factorisation.solve(&state.residual);
+            let step = match careful_from {
+                None => factorisation.solve(&state.residual),
+                Some(_) => self.true_step(system, work, (&state, &factorisation), iteration)?,
+            };
             let proposal = mixing.propose(&state.orbit.nodal, &step);
             let next = self.evaluate(system, work, Orbit { nodal: proposal }, (iteration, &best.1));
             let growth = match &next {
@@ -439,6 +446,24 @@ impl PeriodicSolver {
             }
         }
         Factorisation::new(&self.time, system.mass(), &tangents, memory.as_ref())
+    }
+
+    /// The Newton step with the true derivative of the residual.
+    fn true_step<S: PeriodicSystem>(
+        &self,
+        system: &S,
+        work: &mut S::Work,
+        (state, factorisation): (&Iterate<S::Seen>, &Factorisation),
+        iteration: usize,
+    ) -> Result<DMatrix<f64>, PeriodicError<S::Error>> {
+        let nearly = factorisation.solve(&state.residual);
+        krylov::solve(&nearly, |direction| {
+            let way = SLOPE_STEP / direction.amax();
+            let nodal = &state.orbit.nodal + direction * way;
+            let moved = self.evaluate(system, work, Orbit { nodal }, (iteration, &state.orbit))?;
+            // the step from a residual is that to lower it
+            Ok(-factorisation.solve(&((moved.residual - &state.residual) / way)))
+        })
     }
 
     /// The longest halved Newton step that keeps the residual from growing, or the best one tried.

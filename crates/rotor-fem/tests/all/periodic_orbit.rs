@@ -123,6 +123,29 @@ impl PeriodicSystem for Lagging {
     }
 }
 
+/// A lag so strong that steps with the tangent that knows nothing of it run away, and none before is mixed in: the careful
+/// search finds the exact answer by the true derivative.
+#[test]
+fn a_lag_that_the_tangent_contradicts_is_found_by_the_true_derivative() {
+    let time = TimeElements::default();
+    let (frequency, zeta, gain, rate) = (1.3, 0.05, -4.0, 0.5);
+    let mass = DMatrix::identity(1, 1);
+    let system = Lagging { mass, time: time.clone(), frequency, zeta, gain, rate };
+    let settings = PeriodicSettings { mixing_depth: 0, ..PeriodicSettings::default() };
+    let mut solver = PeriodicSolver::new(time.clone(), settings).unwrap();
+    let solution = solver.solve(&system, &Orbit::zero(&time, 1)).unwrap();
+    println!("{} steps: {:.1?}", solution.iterations, solution.residual_history);
+    // (w^2 - 1 + 2 i zeta w + a i b / (b + i)) q = 1
+    let of_lag = [gain * rate / (rate * rate + 1.0), gain * rate * rate / (rate * rate + 1.0)];
+    let (real, imaginary) =
+        (frequency * frequency - 1.0 + of_lag[0], 2.0 * zeta * frequency + of_lag[1]);
+    let square = real * real + imaginary * imaginary;
+    for (psi, q) in solution.samples.azimuth_rad.iter().zip(solution.samples.q.iter()) {
+        let exact = (real * psi.cos() + imaginary * psi.sin()) / square;
+        assert_abs_diff_eq!(*q, exact, epsilon = 3e-7);
+    }
+}
+
 /// The tangent knows nothing of the lag: chord steps leave 8 and 64 % of the residual each, mixing
 /// makes up for it. The answer is exact: `(w^2 - 1 + 2 i zeta w + i a b / (b + i)) q = 1` at 1/rev.
 #[test]
