@@ -360,6 +360,10 @@ pub struct ImportArgs {
     /// of test if there are their columns, else a generic loop.
     #[arg(long, value_parser = choice_parser::<ImportKind>())]
     pub kind: Option<ImportKind>,
+    /// What these options say, kept in a file: columns with their sources and factors, rate, range. An option given here too
+    /// goes before it.
+    #[arg(long, value_name = "MAP.ron")]
+    pub mapping: Option<PathBuf>,
     /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
     /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
