@@ -58,6 +58,8 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     }
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
+    let (glances, subject) = bench_study::glances(&data);
+    warn(&bench_study::compared(&glances, subject), args.format.form());
     let progress = Progress::new(MODELS_COMPARED);
     progress.begin(0, &format!("identifying from {} runs", data.run_count()));
     let [written, page_written_to] = [Some(&args.output), page_path.as_ref()]
