@@ -240,9 +240,10 @@ pub struct IdentifyArgs {
     /// Folder with dataset.ron and its records.
     #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
-    /// Actuator file to write; the page of its pictures is written beside it as ACTUATOR.html.
+    /// Actuator file to write, `NAME.ron` of the folder's name if left out; the page of its pictures is written beside it as
+    /// ACTUATOR.html. Neither replaces what hhc did not write.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
