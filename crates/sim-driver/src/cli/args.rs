@@ -337,7 +337,18 @@ pub struct ExportArgs {
     /// Samples per second of the step functions of an actuator.
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,
-    /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `rotor` of a case if left out.
+    /// Write the monitor of a cause instead: the stages of the actuator that it is, such as `Backlash`; from `hhc diagnose`
+    /// they stand in extended.ron. In c, python or json.
+    #[arg(long, value_name = "STAGES", value_delimiter = ',', requires = "threshold_deg")]
+    pub monitor: Vec<String>,
+    /// RMS residual that a sound actuator does not reach, deg: beyond it the monitor speaks. `hhc predict` tells that of a record.
+    #[arg(long, value_name = "DEG", requires = "monitor", allow_negative_numbers = true)]
+    pub threshold_deg: Option<f64>,
+    /// Memory of the monitor, s.
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub memory_s: f64,
+    /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `flap_monitor`, or `rotor` of a case
+    /// if left out.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
     /// Folder to write, never overwritten.
