@@ -67,6 +67,32 @@ pub enum ExportError {
         /// Its value.
         value: f64,
     },
+    /// Nothing to watch for.
+    #[error(
+        "with the cause and without it the flap moves alike: there is nothing to watch for; name stages that act on the flap"
+    )]
+    NoCause,
+    /// The cause is no stage of the actuator.
+    #[error(
+        "there is no stage `{name}` among those of the actuator: {found}; name one of amplifier or linkage, as its file has it"
+    )]
+    NoStage {
+        /// The name given.
+        name: String,
+        /// The stages there are.
+        found: String,
+    },
+    /// A number of a monitor is zero, negative, NaN or infinite.
+    #[error("the {what} is {value}, expected a positive finite number")]
+    NotPositive {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A monitor in a language it is not written in.
+    #[error("a monitor is written in C, Python or JSON; give one of them with --to")]
+    MonitorTarget,
     /// The actuator itself is refused.
     #[error(transparent)]
     Actuator(#[from] PreisachError),

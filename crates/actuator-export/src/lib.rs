@@ -4,6 +4,7 @@
 //! |---|---|
 //! | languages | [`Target`] |
 //! | the files of one language | [`export`] |
+//! | the monitor of a named cause: residual, amount, threshold | [`Monitor`], [`export_monitor`] |
 //! | what they leave out or do only nearly | [`remarks()`] |
 //! | what cannot be exported, with the remedy | [`ExportError`] |
 //! | texts of code and JSON, for other exporters | [`Library`], [`filled`], [`wrapped`], [`check_name`], [`Json`] |
@@ -17,6 +18,7 @@ mod error;
 mod json;
 mod laws;
 mod library;
+mod monitor;
 mod name;
 mod plan;
 mod remarks;
@@ -27,6 +29,7 @@ pub use constant::{number, wrapped};
 pub use error::ExportError;
 pub use json::Json;
 pub use library::{Library, filled, prefixed};
+pub use monitor::{Monitor, Seen, Watched, export_monitor, without_stages};
 pub use name::check as check_name;
 pub use remarks::remarks;
 

@@ -1,5 +1,6 @@
 //! What a person checks at a glance of one record.
 
+use measured_data::limits;
 use preisach_dyn::identify::{BenchRecord, Drive, Finding, SplitRule, Subject, Waveform};
 use rotor_base::{mean_square, rests, significant, wrap_degrees};
 use serde::Serialize;
@@ -28,6 +29,8 @@ pub struct Glance {
     pub rests_s: Vec<f64>,
     /// Length, s.
     pub duration_s: f64,
+    /// Smallest and largest output, in its unit.
+    pub output: (f64, f64),
     /// What identification would say of it alone.
     pub findings: Vec<Finding>,
 }
@@ -64,6 +67,7 @@ impl Glance {
             lag_deg: drive.lag_deg(record).filter(|_| periodic).map(turned),
             rests_s: resting.iter().map(|rest| rest.len() as f64 * step_s).collect(),
             duration_s: samples.len() as f64 * step_s,
+            output: limits(&record.output_deg[samples]),
             findings: record.suspicions(is_slow),
         }
     }

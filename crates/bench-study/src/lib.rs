@@ -5,6 +5,8 @@
 //! | identification from a bench or from loops of any two channels, the model chosen | [`identification`] |
 //! | from a data folder of any kind | [`any_data`] |
 //! | what a person checks at a glance of one record | [`Glance`] |
+//! | what records show beside one another | [`compared`] |
+//! | what an import says of the records that it wrote | [`ImportReport`] |
 //! | identification from reversal curves | [`curves`] |
 //! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
 //! | tables of the figures, for any plotting program | [`figures`] |
@@ -13,18 +15,22 @@
 //! | the same as pictures on one page | [`page`] |
 
 pub mod any_data;
+mod beside;
 pub mod curves;
 mod error;
 pub mod figures;
 mod glance;
 pub mod identification;
+mod import_report;
 pub mod page;
 pub mod reversals;
 pub mod spectra;
 pub mod stored;
 
+pub use beside::{compared, glances};
 pub use error::BenchError;
 pub use glance::Glance;
+pub use import_report::ImportReport;
 
 /// Version of the program, part of every actuator file.
 const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -1,8 +1,8 @@
 //! NumPy arrays in and out, by their bytes: NumPy is asked as any Python program asks it, so that no version of its C interface
 //! is built in and nothing here is unsafe. A copy costs a millisecond per million numbers.
 
-use crate::answers::raised;
-use measured_data::problem::{Fault, Place, Problem};
+use crate::answers::{raised, refused};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyByteArray, PyBytes, PySlice};
 
@@ -11,11 +11,6 @@ const SIZE: usize = size_of::<f64>();
 /// Numbers taken over at once: their bytes stay in the cache.
 const BLOCK: usize = 8192;
 
-/// That an argument is refused.
-pub(crate) fn refused(name: &str, message: String) -> Problem {
-    Problem::new(Place::file(name), Fault::Refused { message })
-}
-
 /// The numbers of an array of one dimension, or of what NumPy makes one of.
 ///
 /// # Errors
@@ -23,7 +18,14 @@ pub(crate) fn refused(name: &str, message: String) -> Problem {
 pub(crate) fn numbers(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let py = given.py();
     let numpy = py.import("numpy")?;
-    let array = numpy.call_method1("asanyarray", (given,))?;
+    // what NumPy says of what is no array names no argument
+    let told = |error: PyErr| {
+        if !error.is_instance_of::<PyValueError>(py) {
+            return error;
+        }
+        raised(py, refused(name, error.value(py).to_string()))
+    };
+    let array = numpy.call_method1("asanyarray", (given,)).map_err(told)?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     if !["f", "i", "u"].contains(&kind.as_str()) && array.len().is_ok_and(|count| count > 0) {
         let kind = array.getattr("dtype")?.str()?.to_string();
@@ -34,7 +36,7 @@ pub(crate) fn numbers(name: &str, given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>
         let message = "a masked array: leave out what is masked, or fill it".to_owned();
         return Err(raised(py, refused(name, message)));
     }
-    let array = numpy.call_method1("asarray", (array, "float64"))?;
+    let array = numpy.call_method1("asarray", (array, "float64")).map_err(told)?;
     let dimensions: usize = array.getattr("ndim")?.extract()?;
     if dimensions != 1 {
         let message = format!("an array of {dimensions} dimensions: give one of one dimension");

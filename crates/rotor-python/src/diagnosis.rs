@@ -1,8 +1,7 @@
 //! What a simulation of measured data lacks.
 
 use crate::actuator::Actuator;
-use crate::answers::{json, table, warn, worked};
-use crate::arrays::refused;
+use crate::answers::{json, refused, table, warn, worked};
 use actuator_gap::StoredActuator;
 use preisach_dyn::ActuatorModel;
 use pyo3::prelude::*;
@@ -70,6 +69,7 @@ pub(crate) enum Simulation<'py> {
 /// test need the case.
 #[pyfunction]
 #[pyo3(signature = (data, model=None, *, reference=None, only=vec![], cache=None))]
+#[pyo3(text_signature = "(data, model=None, *, reference=None, only=(), cache=None)")]
 pub(crate) fn diagnose(
     py: Python<'_>,
     data: PathBuf,

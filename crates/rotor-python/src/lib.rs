@@ -39,6 +39,7 @@ mod rotor_hhc {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        crate::answers::notice_forks(module.py())?;
         module.add("__version__", sim_driver::VERSION)?;
         module.add("MODEL_VERSION", rotor_study::MODEL_VERSION)
     }

@@ -1,7 +1,7 @@
 //! Records in memory as a data folder: they are read and checked as a folder on disk is.
 
-use crate::answers::raised;
-use crate::arrays::{numbers, refused};
+use crate::answers::{raised, refused, worked};
+use crate::arrays::numbers;
 use measured_data::problem::Problem;
 use measured_data::{
     DATASET, DatasetFile, DatasetKind, Embedded, EvenRecord, Folder, RunFile, ron_text,
@@ -35,50 +35,63 @@ pub(crate) fn folder_of(data: &Bound<'_, PyAny>, said: &Description) -> PyResult
         }
         return Ok(Folder::Disk(data.extract::<PathBuf>()?));
     };
-    let mut texts = Vec::new();
-    let mut files = Vec::new();
+    let mut records = Vec::new();
     for item in runs.items()?.iter() {
         let (id, columns): (String, Vec<Bound<'_, PyAny>>) = item.extract()?;
-        let text = record_text(&id, &columns)?;
+        let columns = columns_of(py, &id, &columns)?;
+        records.push((id, columns));
+    }
+    // a million samples take a second to be written
+    worked(py, || Ok(described(records, said)?))
+}
+
+/// Records with what is said of them as a folder.
+fn described(records: Vec<(String, Record)>, said: &Description) -> Result<Folder, Problem> {
+    let title = said.title.clone().unwrap_or_else(|| "records in memory".to_owned());
+    let (mut files, mut texts) = (Vec::new(), Vec::new());
+    for (id, columns) in records {
         let file = format!("{id}.csv");
         files.push(RunFile { id, file: file.clone(), ..RunFile::default() });
-        texts.push((file, text));
+        texts.push((file, record_text(&columns)));
     }
-    let title = said.title.clone().unwrap_or_else(|| "records in memory".to_owned());
-    let described = DatasetFile {
+    let dataset = DatasetFile {
         flap_deg_per_um: said.flap_deg_per_um,
         command_range_volt: said.command_range_volt,
         ..DatasetFile::of(DatasetKind::ActuatorBench, title, files)
     };
-    let text = ron_text(&described).map_err(|e| raised(py, refused("data", e.to_string())))?;
+    let text = ron_text(&dataset).map_err(|e| refused("data", e.to_string()))?;
     texts.push((DATASET.to_owned(), text));
     Ok(Folder::Embedded(Embedded::of_texts(ARRAYS, texts)))
 }
 
-/// The table of a record.
-fn record_text(id: &str, columns: &[Bound<'_, PyAny>]) -> PyResult<String> {
+/// Time, command and displacement of a record.
+type Record = [Vec<f64>; 3];
+
+/// The numbers of a record in memory; what is wrong with them is told with its name.
+fn columns_of(py: Python<'_>, id: &str, columns: &[Bound<'_, PyAny>]) -> PyResult<Record> {
     let [time, command, displacement] = columns else {
         let message = format!("{} arrays, expected {}", columns.len(), COLUMNS.join(", "));
-        return Err(match columns.first() {
-            Some(first) => raised(first.py(), refused(id, message)),
-            None => Python::attach(|py| raised(py, refused(id, message))),
-        });
+        return Err(raised(py, refused(&format!("{ARRAYS}/{id}"), message)));
     };
-    let py = time.py();
-    let time_s = numbers(COLUMNS[0], time)?;
-    let named = [(COLUMNS[1], command), (COLUMNS[2], displacement)];
-    let mut others = Vec::new();
-    for (name, given) in named {
-        let values = numbers(name, given)?;
-        same_count(name, &values, &time_s).map_err(|problem| raised(py, problem))?;
-        others.push(values);
-    }
+    let names = COLUMNS.map(|name| format!("{ARRAYS}/{id}: {name}"));
+    let time_s = numbers(&names[0], time)?;
+    let other = |at: usize, given: &Bound<'_, PyAny>| {
+        let values = numbers(&names[at], given)?;
+        let counted = same_count(&names[at], &values, &time_s);
+        counted.map(|()| values).map_err(|problem| raised(py, problem))
+    };
+    let (command, displacement) = (other(1, command)?, other(2, displacement)?);
+    Ok([time_s, command, displacement])
+}
+
+/// The table of a record.
+fn record_text([time_s, command, displacement]: &Record) -> String {
     let mut text = COLUMNS.join(",") + "\n";
-    for ((time, command), displacement) in time_s.iter().zip(&others[0]).zip(&others[1]) {
+    for ((time, command), displacement) in time_s.iter().zip(command).zip(displacement) {
         // writing to a text does not fail
         let _ = writeln!(text, "{time},{command},{displacement}");
     }
-    Ok(text)
+    text
 }
 
 /// Refuses an array that has not a value for each time.

@@ -1,7 +1,7 @@
 //! A case: modes of its blade, its trim, its T, its control.
 #![expect(clippy::needless_pass_by_value, reason = "arguments of Python are handed over")]
 
-use crate::answers::{json, raised, table, warn, worked};
+use crate::answers::{json, table, warn, worked};
 use crate::arrays::{array, complex, numbers, shaped};
 use measured_data::problem::{Fault, Place, Problems};
 use measured_data::refuse_unwritable;
@@ -60,7 +60,12 @@ pub(crate) fn modes<'py>(
         speed_ratios,
         shape_stations_r: stations,
     };
-    let found = worked(py, || modes_of_case(&loaded(case.as_ref(), None, None)?, &question))?;
+    let (found, steady_tip, fan) = worked(py, || {
+        let found = modes_of_case(&loaded(case.as_ref(), None, None)?, &question)?;
+        let steady_tip = found.steady_tip.map(|tip| json(&tip)).transpose()?;
+        let fan = json(&found.fan)?;
+        Ok((found, steady_tip, fan))
+    })?;
     warn(py, &found.warnings)?;
     let modes = &found.modes;
     let per_rev: Vec<f64> =
@@ -78,10 +83,7 @@ pub(crate) fn modes<'py>(
     answer.set_item("stations_r", array(py, &stations)?)?;
     answer.set_item("shape", complex(py, &shape, &[modes.len(), stations.len(), 3])?)?;
     answer.set_item("rotor_speed_rad_s", found.rotor_speed_rad_s)?;
-    let steady_tip =
-        found.steady_tip.map(|tip| json(&tip)).transpose().map_err(|e| raised(py, e))?;
     answer.set_item("steady_tip", steady_tip.map(|text| table(py, &text)).transpose()?)?;
-    let fan = json(&found.fan).map_err(|error| raised(py, error))?;
     answer.set_item("fan", table(py, &fan)?)?;
     answer.set_item("warnings", &found.warnings)?;
     Ok(answer)

@@ -1,6 +1,6 @@
 //! Responses of a section with a trailing-edge flap.
 
-use crate::answers::{raised, worked};
+use crate::answers::{raised, refused, worked};
 use crate::arrays::{array, complex, numbers};
 use flap_aero::{AttachedFlowModel, FlapEffectiveness, Motion};
 use pyo3::prelude::*;
@@ -50,8 +50,14 @@ pub(crate) fn section_response<'py>(
         let motion = choice_named::<Motion>("motion", motion)?;
         let mut loads = [vec![], vec![], vec![]];
         let mut remarks: Vec<String> = vec![];
-        for &k in &frequencies {
-            let found = response_at(&section, motion, k)?;
+        // what is wrong with the section is wrong at every frequency
+        section.coefficients()?;
+        for (i, &k) in frequencies.iter().enumerate() {
+            let found =
+                response_at(&section, motion, k).map_err(|error| match frequencies.len() {
+                    1 => SimError::from(error),
+                    _ => refused(&format!("reduced_frequency[{i}]"), error.to_string()).into(),
+                })?;
             for (all, one) in loads.iter_mut().zip([found.cn, found.cm, found.ch]) {
                 all.push(one);
             }

@@ -127,8 +127,17 @@ def test_bad_runs_are_told_as_those_of_a_folder():
     named["sine_1hz_30v"] = (time_s, command_volt, displacement_um)
     with pytest.raises(rotor_hhc.Error, match=r"arrays/sine_1hz_30v.csv:9.*displacement_um"):
         rotor_hhc.identify(named)
-    with pytest.raises(rotor_hhc.Error, match="2 arrays, expected time_s, command_V"):
+    with pytest.raises(rotor_hhc.Error, match="arrays/a: .*2 arrays, expected time_s, command_V"):
         rotor_hhc.identify({"a": (time_s, command_volt)})
+    # of many runs, the one that fails is named
+    for columns, words in [
+        ((time_s, command_volt[1:], displacement_um), "command_V.*give one for each time"),
+        ((time_s, command_volt, displacement_um[None, :]), "displacement_um.*one dimension"),
+        ((time_s, ["fast"] * time_s.size, displacement_um), "command_V.*give real numbers"),
+        ((time_s, command_volt, [[1.0], [2.0, 3.0]]), "displacement_um"),
+    ]:
+        with pytest.raises(rotor_hhc.Error, match=f"arrays/sine_10hz_30v: {words}"):
+            rotor_hhc.identify({**bench.runs(), "sine_10hz_30v": columns})
     with pytest.raises(rotor_hhc.Error, match="unknown choice `best-of-all`; known here: .*bouc-wen"):
         rotor_hhc.identify(bench.runs(), model="best-of-all")
     with pytest.raises(rotor_hhc.Error, match="give them there"):

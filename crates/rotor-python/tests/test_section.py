@@ -40,6 +40,8 @@ def test_what_is_out_of_range_has_the_words_of_the_command(hhc):
     with pytest.raises(rotor_hhc.Error) as refused:
         rotor_hhc.section_response(0.1, mach=1.2)
     assert str(refused.value) == said
+    with pytest.raises(rotor_hhc.Error, match=r"reduced_frequency\[2\]: .*0 to 1000"):
+        rotor_hhc.section_response([0.1, 0.2, -0.1])
     with pytest.raises(rotor_hhc.Error, match="unknown choice `glide`; known here: flap, pitch, plunge"):
         rotor_hhc.section_response(0.1, motion="glide")
     with pytest.raises(rotor_hhc.Error, match="as many as of the incidence"):

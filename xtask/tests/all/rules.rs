@@ -3,7 +3,7 @@
 
 use xtask::layers::{Dependency, DependencyKind, LayerFault, Member, STUDY, brought_in, check};
 use xtask::tidy::{self, Finding, Tree};
-use xtask::workspace;
+use xtask::{files, workspace};
 
 fn member(name: &str, floor: u32, dependencies: &[(&str, DependencyKind)]) -> Member {
     Member {
@@ -333,4 +333,19 @@ fn validation_ids_belong_to_one_test_and_stand_on_the_page() {
     one(&ids(&longer, "//! A.\n", &[known[0], known[1], &third]), "0 tests");
     let odd = ids(&page, "//! A.\n", &[known[0], known[1], "V-qq-1"]);
     assert!(odd.iter().any(|finding| finding.fault.contains("V-AREA-NN")), "{odd:?}");
+}
+
+/// Every crate shows its user a task of his in a program that is read in one go; `.ci/examples` runs them.
+#[test]
+fn every_crate_has_an_example_of_at_most_80_lines() {
+    let crates = files::in_folder(&workspace::root().join("crates")).unwrap();
+    assert!(crates.len() > 20, "{crates:?}");
+    for folder in crates {
+        let examples = files::in_folder(&folder.join("examples")).unwrap();
+        let is_short = |path: &std::path::PathBuf| {
+            let ending = path.extension().is_some_and(|e| e == "rs" || e == "py");
+            ending && files::read(path).unwrap().lines().count() <= 80
+        };
+        assert!(examples.iter().any(is_short), "{} has none", folder.display());
+    }
 }

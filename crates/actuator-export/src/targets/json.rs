@@ -9,10 +9,15 @@ use preisach_dyn::{
 };
 
 pub(crate) fn files(plan: &Plan<'_>) -> Vec<(String, String)> {
+    vec![(format!("{}.json", plan.name), record(plan).document())]
+}
+
+/// The actuator as a record.
+pub(crate) fn record(plan: &Plan<'_>) -> Json {
     let (model, law) = (plan.model, &plan.law);
     let lines = |lines: &[&str]| Json::List(lines.iter().map(|line| Json::text(line)).collect());
     let remarks = remarks(model).into_iter().map(Json::Text).collect();
-    let record = Json::Record(vec![
+    Json::Record(vec![
         ("name", Json::text(plan.name)),
         (
             "units",
@@ -39,8 +44,7 @@ pub(crate) fn files(plan: &Plan<'_>) -> Vec<(String, String)> {
         ("amplifier", Json::List(model.amplifier.iter().map(amplifier).collect())),
         ("linkage", Json::List(model.linkage.iter().map(linkage).collect())),
         ("remarks", Json::List(remarks)),
-    ]);
-    vec![(format!("{}.json", plan.name), record.document())]
+    ])
 }
 
 fn range(range: VoltageRange) -> Json {

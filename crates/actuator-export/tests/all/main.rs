@@ -9,4 +9,5 @@ mod common;
 mod json;
 mod matlab;
 mod messages;
+mod monitor;
 mod python;

@@ -114,6 +114,15 @@ pub fn refuse_other_text(path: &Path, held: &str, kind: &'static str) -> Result<
     Err(DataError::WouldOverwriteOther { path: path.to_path_buf(), kind })
 }
 
+/// The file for what is made of a data folder if the user names none: the folder's name with the ending `.ron`, in the working
+/// folder.
+pub fn default_model_file(data: &Path) -> PathBuf {
+    // `.` and `..` have no name of their own
+    let whole = data.canonicalize().unwrap_or_else(|_| data.to_owned());
+    let name = whole.file_name().map_or_else(|| "model".into(), |name| name.display().to_string());
+    PathBuf::from(format!("{name}.ron"))
+}
+
 /// Whether two paths lead to the same file or folder.
 fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)

@@ -342,6 +342,13 @@ fn loop_columns(data: &[(usize, Channel)], options: &ColumnOptions) -> Result<Ve
         let at = data.iter().position(|(_, c)| c.name == *wanted || c.label() == *wanted);
         at.ok_or_else(|| missing(wanted, "correct --input or --response"))
     };
+    if let [(_, only)] = data {
+        let message = format!(
+            "there is one channel beside the time, `{}`, and a record needs input and output: export both into one file, or import the two files together",
+            only.label()
+        );
+        return Err(Fault::Other(message));
+    }
     let input = options.input.as_ref().map(find).transpose()?;
     let output = options.response.as_ref().map(find).transpose()?;
     let all: Vec<usize> = (0..data.len()).collect();

@@ -26,6 +26,8 @@ const GAP: f64 = 10.0;
 const LEAST_PART: usize = 16;
 /// Most samples without a number in a row that are filled by a straight line.
 const MOST_FILLED: usize = 10;
+/// The last numbers of counters of 8, 16 and 32 bit, behind which they begin at 0.
+const FULL_COUNTS: [f64; 3] = [255.0, 65_535.0, 4_294_967_295.0];
 /// Least part of the steps of the time that a rounded clock makes shorter or longer than the others.
 const LEAST_ROUNDED: f64 = 0.02;
 /// The same where the longer step is twice the shorter: samples that were lost look alike.
@@ -66,6 +68,14 @@ struct Gaps {
     last: Vec<f64>,
     filled: usize,
     left_out: usize,
+    /// The number that the source gave its last row.
+    counted: Option<f64>,
+    /// Blank lines between the first two rows, where rows stand for equal steps.
+    usual_blank: Option<usize>,
+    /// Whether a row was there already.
+    is_begun: bool,
+    /// Places where a table without a time is torn.
+    torn: Listing,
 }
 
 /// Steps of the time as it comes in.
@@ -180,6 +190,54 @@ impl Gather {
         (self.time.hole, self.time.holes) = (true, true);
     }
 
+    /// Tells of the blank lines before a row of a source without a time. Where they are others than between the first two
+    /// rows, samples may have been lost: there the record is parted or refused.
+    pub(super) fn blank_lines(&mut self, count: usize, line: usize, problems: &mut Problems) {
+        if !std::mem::replace(&mut self.gaps.is_begun, true) {
+            return;
+        }
+        let usual = *self.gaps.usual_blank.get_or_insert(count);
+        if count == usual {
+            return;
+        }
+        if self.reduction.split {
+            self.begin_anew();
+            self.gaps.is_begun = true;
+            self.gaps.usual_blank = Some(usual);
+            return;
+        }
+        let message = format!(
+            "{count} blank lines before this row, {usual} between the first two: in a table without a time none can tell whether samples were lost there; import with --split, which begins a run there, or delete the blank lines, or write NaN into those of lost samples"
+        );
+        let place = self.place(line);
+        self.gaps.torn.push(problems, place, Fault::Other(message));
+    }
+
+    /// Tells of the number that a source without a time gives its next row, numbers that it skips are samples
+    /// without a value. Where the numbers begin again, so does the record.
+    pub(super) fn counted(&mut self, number: f64, line: usize, problems: &mut Problems) {
+        let Some(last) = self.gaps.counted else {
+            self.gaps.counted = Some(number).filter(|number| number.is_finite());
+            return;
+        };
+        let number = if number.is_finite() { number } else { last + 1.0 };
+        self.gaps.counted = Some(number);
+        let skipped = (number - last).round() - 1.0;
+        let is_full = FULL_COUNTS.iter().any(|full| (last - full).abs() < 0.5);
+        if skipped > 0.0 {
+            self.gaps.open = self.gaps.open.saturating_add(whole(skipped.min(1e12)));
+        } else if skipped < 0.0 && !(is_full && number.abs() < 0.5) {
+            if self.reduction.split {
+                return self.begin_anew();
+            }
+            let message = format!(
+                "the numbers of the rows go from {last} to {number}: another record begins here, or rows stand twice; import with --split, which begins a run here, or leave their column out by - in its place: --columns -,command_V,displacement_um"
+            );
+            let place = self.place(line);
+            self.gaps.torn.push(problems, place, Fault::Other(message));
+        }
+    }
+
     /// Takes a sample up that may lack numbers. Up to [`MOST_FILLED`] such samples between two others are filled by straight
     /// lines; more are a gap, where the record is parted or refused.
     pub(super) fn push_or_miss(&mut self, row: Vec<f64>, line: usize, problems: &mut Problems) {
@@ -196,7 +254,7 @@ impl Gather {
             self.begin_anew();
         } else if open > MOST_FILLED {
             let message = format!(
-                "{open} samples before this line have no number, more than the {MOST_FILLED} that are filled; import with --split, which parts the record there"
+                "{open} samples before this line have no number or no row, more than the {MOST_FILLED} that are filled; import with --split, which parts the record there"
             );
             problems.push(self.place(line), Fault::Other(message));
             self.leave_out();
@@ -216,7 +274,8 @@ impl Gather {
     fn begin_anew(&mut self) {
         let without_time = self.without_time.clone();
         let fresh = Self::new(&self.file, self.labels.clone(), self.reduction);
-        let fresh = Self { without_time, ..fresh };
+        let gaps = Gaps { counted: self.gaps.counted, ..Gaps::default() };
+        let fresh = Self { gaps, without_time, ..fresh };
         let mut ended = std::mem::replace(self, fresh);
         self.before = std::mem::take(&mut ended.before);
         self.before.push(ended);
@@ -327,6 +386,7 @@ impl Gather {
     /// The one record; none if it cannot be used, which `problems` then say.
     fn whole(mut self, problems: &mut Problems) -> Option<Gathered> {
         std::mem::take(&mut self.time.backward).finish(problems);
+        std::mem::take(&mut self.gaps.torn).finish(problems);
         let label = self.labels[0].clone();
         if self.count < LEAST_ROWS {
             problems.push(Place::file(&self.file), too_few_rows(self.count));
@@ -415,7 +475,7 @@ impl Gather {
 
     /// What was filled and left out.
     fn told(&self) -> Vec<Problem> {
-        let Gaps { open, filled, left_out, .. } = self.gaps;
+        let &Gaps { open, filled, left_out, .. } = &self.gaps;
         let told = [
             (filled, "samples without a number are filled by straight lines"),
             (left_out + open, "samples without a number at an end are left out"),

@@ -8,6 +8,7 @@ mod columns;
 mod folder;
 mod gather;
 mod in_memory;
+mod mapping;
 mod mat;
 mod micromag;
 mod sweep;
@@ -17,6 +18,7 @@ mod workbook;
 
 pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
+pub use mapping::{deg_per_um_of_arm, import_mapped};
 pub use mat::{MatValue, Variables, mat_file, read_variables};
 
 use crate::dataset::DatasetKind;
@@ -36,7 +38,7 @@ use std::path::{Path, PathBuf};
 pub enum SourceKind {
     /// Text table, with or without a header.
     Csv,
-    /// MAT file of level 5 (`save -v7`).
+    /// MAT file of level 5 (`save -v7`) or 4.
     Mat,
     /// TDMS file of `LabVIEW`.
     Tdms,
@@ -49,7 +51,7 @@ impl SourceKind {
     pub fn words(self) -> &'static str {
         match self {
             Self::Csv => "text table",
-            Self::Mat => "MAT file of level 5",
+            Self::Mat => "MAT file",
             Self::Tdms => "TDMS file",
             Self::MicromagForc => "MicroMag FORC file",
         }
@@ -406,7 +408,7 @@ fn recognise(start: &[u8], path: &Path) -> Result<SourceKind, Fault> {
     if text::is_text(start) && !named_mat {
         return Ok(SourceKind::Csv);
     }
-    let message = "is not recognised as CSV, MAT v5 or a MicroMag FORC file; export the record as CSV, or say what it is with --as";
+    let message = "is not recognised as a text table, MAT, TDMS or a MicroMag FORC file; export the record as CSV, or say what it is with --as";
     Err(Fault::Other(message.to_owned()))
 }
 

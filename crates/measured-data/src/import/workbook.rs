@@ -17,6 +17,8 @@ const MOST: u64 = 1 << 30;
 const SECONDS_OF_A_DAY: f64 = 86_400.0;
 /// Most columns of a sheet.
 const MOST_COLUMNS: usize = 16_384;
+/// Most rows of a sheet.
+const MOST_ROWS: usize = 1_048_576;
 
 fn refused(what: &str) -> Fault {
     Fault::Other(format!("{what}; open it and save the sheet of the record as CSV"))
@@ -160,6 +162,7 @@ fn rows(xml: &str, shared: &[String], dated: &[bool]) -> Option<String> {
     let mut table = String::new();
     let mut cells: Vec<String> = Vec::new();
     let (mut kind, mut is_date) = ("", false);
+    let mut last_row = 0;
     for (is_end, name, attributes, text) in tags(xml) {
         match name {
             "row" if is_end => {
@@ -169,7 +172,15 @@ fn rows(xml: &str, shared: &[String], dated: &[bool]) -> Option<String> {
                 }
             }
             _ if is_end => {}
-            "row" => cells.clear(),
+            "row" => {
+                cells.clear();
+                let number = attribute(attributes, "r").and_then(|r| r.parse::<usize>().ok());
+                let number = number.filter(|r| *r <= MOST_ROWS).unwrap_or(last_row + 1);
+                // blank rows are not stored
+                let blank = if last_row > 0 { number.saturating_sub(last_row + 1) } else { 0 };
+                table.push_str(&"\t\n".repeat(blank));
+                last_row = number;
+            }
             "c" => {
                 kind = attribute(attributes, "t").unwrap_or("n");
                 let style = attribute(attributes, "s").and_then(|s| s.parse::<usize>().ok());
@@ -230,5 +241,9 @@ mod tests {
             <c t=\"s\" s=\"1\"><v>0</v></c></row>";
         let texts = shared("<sst><si><t>a &amp; b</t></si></sst>");
         assert_eq!(rows(sheet, &texts, &dated(styles)).unwrap(), "43200\t0.5\t7\ta & b\n");
+        // rows that hold nothing are not stored, and none the less there
+        let row = |number: usize| format!("<row r=\"{number}\"><c><v>1</v></c></row>");
+        let sheet = [3, 4, 7].map(row).concat();
+        assert_eq!(rows(&sheet, &[], &[]).unwrap(), "1\n1\n\t\n\t\n1\n");
     }
 }

@@ -52,13 +52,13 @@ impl PointCsv {
         };
         let mut faults = Listing::default();
         let Self { header, file, numbers, texts, lines } = &mut own;
-        let read = table.rows(&mut problems, |cells, line, problems| {
+        let read = table.rows(&mut problems, |cells, row, problems| {
             let Some(cells) = cells else { return };
             let cell = |(column, (text, at)): (usize, &(&str, usize))| {
                 if text.is_empty() || is_text[column] {
                     return None;
                 }
-                let place = || Place::at(&*file, line, *at).field(&header[column].0);
+                let place = || Place::at(&*file, row.line, *at).field(&header[column].0);
                 number(text).map_err(|fault| faults.push(problems, place(), fault)).ok()
             };
             numbers.push(cells.iter().enumerate().map(cell).collect());
@@ -66,7 +66,7 @@ impl PointCsv {
                 if *is_text { text.0.to_owned() } else { String::new() }
             };
             texts.push(cells.iter().zip(&is_text).map(word).collect());
-            lines.push(line);
+            lines.push(row.line);
         });
         faults.finish(&mut problems);
         if problems.note(read).is_some() && own.lines.is_empty() {

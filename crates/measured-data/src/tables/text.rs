@@ -5,6 +5,7 @@ use super::units::Channel;
 use crate::files::Source;
 use crate::problem::{Fault, Place, Problem, Problems};
 use csv::{ReaderBuilder, StringRecord, Terminator};
+use std::collections::VecDeque;
 use std::io::Read;
 
 /// Rows below which nothing can be said about sampling.
@@ -21,19 +22,41 @@ pub(crate) fn too_few_rows(rows: usize) -> Fault {
     ))
 }
 
-/// A reader that remembers how its text ended.
+/// A reader that remembers how its text ended, and which of its lines are empty: those vanish behind it.
 struct Ending<R> {
     inner: R,
     last: u8,
     is_at_end: bool,
+    /// Line ends read.
+    lines: usize,
+    /// Numbers of the empty lines, from 1, that no row was read behind yet.
+    empty: VecDeque<usize>,
+}
+
+impl<R> Ending<R> {
+    fn new(inner: R) -> Self {
+        Self { inner, last: b'\n', is_at_end: false, lines: 0, empty: VecDeque::new() }
+    }
+
+    /// Takes the empty lines before a line; how many there are.
+    fn empty_before(&mut self, line: usize) -> usize {
+        let count = self.empty.partition_point(|at| *at < line);
+        self.empty.drain(..count).count()
+    }
 }
 
 impl<R: Read> Read for Ending<R> {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        match buffer[..count].last() {
-            Some(last) => self.last = *last,
-            None => self.is_at_end = true,
+        self.is_at_end |= count == 0;
+        for byte in &buffer[..count] {
+            if *byte == b'\n' {
+                self.lines += 1;
+                if self.last == b'\n' {
+                    self.empty.push_back(self.lines);
+                }
+            }
+            self.last = *byte;
         }
         Ok(count)
     }
@@ -42,10 +65,21 @@ impl<R: Read> Read for Ending<R> {
 /// A row of cells.
 struct Row {
     record: StringRecord,
-    /// Its line in the file, from 1.
-    line: usize,
+    /// Where it stands.
+    at: RowPlace,
     /// Whether a line end follows.
     is_ended: bool,
+    /// Whether its cells hold nothing.
+    is_blank: bool,
+}
+
+/// Where a row stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct RowPlace {
+    /// Its line in the file, from 1.
+    pub(crate) line: usize,
+    /// Blank lines right before it.
+    pub(crate) blank_before: usize,
 }
 
 impl Row {
@@ -95,6 +129,8 @@ pub(crate) struct TextTable<R> {
     pub(crate) header: Vec<HeaderCell>,
     /// Whether the first line holds numbers, no names: it is the first row too.
     pub(crate) is_headless: bool,
+    /// Whether a row of blank cells is one, as where the number of a row is its time.
+    keeps_blank: bool,
 }
 
 impl<'a> TextTable<&'a [u8]> {
@@ -129,9 +165,15 @@ impl<R: Read> TextTable<R> {
             .flexible(true)
             .comment(Some(b'#'))
             .terminator(Terminator::Any(b'\n'))
-            .from_reader(Ending { inner: reader, last: b'\n', is_at_end: false });
-        let file = file.to_owned();
-        Self { file, separator, before, reader, pending: None, header, is_headless: false }
+            .from_reader(Ending::new(reader));
+        let (file, pending) = (file.to_owned(), None);
+        let (is_headless, keeps_blank) = (false, false);
+        Self { file, separator, before, reader, pending, header, is_headless, keeps_blank }
+    }
+
+    /// The same with rows whose cells are all blank, which are left out else.
+    pub(crate) fn with_blank_rows(self) -> Self {
+        Self { keeps_blank: true, ..self }
     }
 
     /// Opens a table and reads its header, a second line of units in brackets included. Lines that
@@ -142,7 +184,7 @@ impl<R: Read> TextTable<R> {
             return Err(Problem::new(Place::file(&table.file), too_few_rows(0)));
         };
         let cell = |(text, at): (&str, usize)| {
-            HeaderCell::new(text, Place::at(&table.file, first.line, at))
+            HeaderCell::new(text, Place::at(&table.file, first.at.line, at))
         };
         table.header = first.cells(separator).into_iter().map(cell).collect();
         let is_number =
@@ -174,12 +216,13 @@ impl<R: Read> TextTable<R> {
         self.header.iter().map(|cell| cell.text.as_str()).collect::<Vec<_>>().join(", ")
     }
 
-    /// The next row that holds anything.
+    /// The next row that holds anything, or blank cells that are kept.
     fn row(&mut self) -> Result<Option<Row>, Problem> {
         if let Some(row) = self.pending.take() {
             return Ok(Some(row));
         }
         let refused = |fault| Problem::new(Place::file(&self.file), fault);
+        let mut blank_before = 0;
         loop {
             let mut record = csv::ByteRecord::new();
             let read = self.reader.read_byte_record(&mut record);
@@ -198,26 +241,35 @@ impl<R: Read> TextTable<R> {
                 let offset = end_byte - behind - usize::from(is_ended) + flaw.valid_up_to();
                 refused(Fault::NotText { offset })
             })?;
-            if record.iter().any(|field| !field.trim().is_empty()) {
-                let line = self.before + end_line - usize::from(is_ended);
-                return Ok(Some(Row { record, line, is_ended }));
+            let own_line = end_line - usize::from(is_ended);
+            blank_before += self.reader.get_mut().empty_before(own_line);
+            let is_blank = record.iter().all(|field| field.trim().is_empty());
+            let has_cells = record.len() > 1 && self.separator != b' ';
+            if !is_blank || self.keeps_blank && has_cells {
+                let at = RowPlace { line: self.before + own_line, blank_before };
+                return Ok(Some(Row { record, at, is_ended, is_blank }));
             }
+            blank_before += 1;
         }
     }
 
-    /// Reads the cells of every row, each with the column of its first character. `take` gets them with the line of the
+    /// Reads the cells of every row, each with the column of its first character. `take` gets them with the place of the
     /// row, or none where the row has another number of fields than the header: `problems` then say so.
     pub(crate) fn rows(
         mut self,
         problems: &mut Problems,
-        mut take: impl FnMut(Option<&[(&str, usize)]>, usize, &mut Problems),
+        mut take: impl FnMut(Option<&[(&str, usize)]>, RowPlace, &mut Problems),
     ) -> Result<(), Problem> {
         let expected = self.header.len();
         let mut counts = Listing::default();
         let mut usual_decimals = None;
         while let Some(row) = self.row()? {
+            if row.is_blank {
+                take(Some(&vec![("", 1); expected]), row.at, problems);
+                continue;
+            }
             let mut cells = row.cells(self.separator);
-            let place = Place::at(&self.file, row.line, 1);
+            let place = Place::at(&self.file, row.at.line, 1);
             // separators behind the last field
             while cells.len() > expected && cells.last().is_some_and(|(text, _)| text.is_empty()) {
                 cells.pop();
@@ -239,34 +291,34 @@ impl<R: Read> TextTable<R> {
                     cells.len()
                 ));
                 counts.push(problems, place, fault);
-                take(None, row.line, problems);
+                take(None, row.at, problems);
                 continue;
             }
-            take(Some(&cells), row.line, problems);
+            take(Some(&cells), row.at, problems);
         }
         counts.finish(problems);
         Ok(())
     }
 
     /// Reads the numbers of every row in the columns `wanted`, each with its label; `read` takes them from the texts of
-    /// their columns. `take` gets them with the line of the row, or none where the row cannot be read: `problems` then say why.
+    /// their columns. `take` gets them with the place of the row, or none where the row cannot be read: `problems` then say why.
     pub(crate) fn numbers(
         self,
         wanted: &[(usize, String)],
         read: impl Fn(usize, &str) -> Result<f64, Fault>,
         problems: &mut Problems,
-        mut take: impl FnMut(Option<&[f64]>, usize, &mut Problems),
+        mut take: impl FnMut(Option<&[f64]>, RowPlace, &mut Problems),
     ) -> Result<(), Problem> {
         let file = self.file.clone();
         let mut lists: [Listing; 2] = Default::default();
         let [sizes, words] = &mut lists;
         let mut numbers = Vec::with_capacity(wanted.len());
-        self.rows(problems, |cells, line, problems| {
-            let Some(cells) = cells else { return take(None, line, problems) };
+        self.rows(problems, |cells, row, problems| {
+            let Some(cells) = cells else { return take(None, row, problems) };
             numbers.clear();
             for (column, label) in wanted {
                 let (text, at) = cells[*column];
-                let field = || Place::at(&file, line, at).field(label);
+                let field = || Place::at(&file, row.line, at).field(label);
                 match read(*column, text) {
                     Ok(value) => numbers.push(value),
                     Err(fault @ Fault::NotANumber { .. }) => words.push(problems, field(), fault),
@@ -274,7 +326,7 @@ impl<R: Read> TextTable<R> {
                 }
             }
             let good = (numbers.len() == wanted.len()).then_some(numbers.as_slice());
-            take(good, line, problems);
+            take(good, row, problems);
         })?;
         for list in lists {
             list.finish(problems);
@@ -319,11 +371,11 @@ pub(crate) fn columns(
         wanted,
         |_, text| number(text),
         problems,
-        |numbers, line, _| {
+        |numbers, row, _| {
             for (column, number) in columns.iter_mut().zip(numbers.into_iter().flatten()) {
                 column.push(*number);
             }
-            lines.push(line);
+            lines.push(row.line);
         },
     );
     if problems.note(read).is_some() && lines.len() < LEAST_ROWS {

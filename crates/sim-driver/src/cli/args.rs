@@ -240,9 +240,10 @@ pub struct IdentifyArgs {
     /// Folder with dataset.ron and its records.
     #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
-    /// Actuator file to write; the page of its pictures is written beside it as ACTUATOR.html.
+    /// Actuator file to write, `NAME.ron` of the folder's name if left out; the page of its pictures is written beside it as
+    /// ACTUATOR.html. Neither replaces what hhc did not write.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
     /// Actuator file whose settings (levels, form, split rule) are taken up.
     #[arg(long, value_name = "ACTUATOR.ron")]
     pub start: Option<PathBuf>,
@@ -336,7 +337,18 @@ pub struct ExportArgs {
     /// Samples per second of the step functions of an actuator.
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,
-    /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `rotor` of a case if left out.
+    /// Write the monitor of a cause instead: the stages of the actuator that it is, such as `Backlash`; from `hhc diagnose`
+    /// they stand in extended.ron. In c, python or json.
+    #[arg(long, value_name = "STAGES", value_delimiter = ',', requires = "threshold_deg")]
+    pub monitor: Vec<String>,
+    /// RMS residual that a sound actuator does not reach, deg: beyond it the monitor speaks. `hhc predict` tells that of a record.
+    #[arg(long, value_name = "DEG", requires = "monitor", allow_negative_numbers = true)]
+    pub threshold_deg: Option<f64>,
+    /// Memory of the monitor, s.
+    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
+    pub memory_s: f64,
+    /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `flap_monitor`, or `rotor` of a case
+    /// if left out.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
     /// Folder to write, never overwritten.
@@ -360,6 +372,10 @@ pub struct ImportArgs {
     /// of test if there are their columns, else a generic loop.
     #[arg(long, value_parser = choice_parser::<ImportKind>())]
     pub kind: Option<ImportKind>,
+    /// What these options say, kept in a file: columns with their sources and factors, rate, range. An option given here too
+    /// goes before it.
+    #[arg(long, value_name = "MAP.ron")]
+    pub mapping: Option<PathBuf>,
     /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
     /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]

@@ -6,7 +6,9 @@ use crate::SimError;
 use crate::case::starting_case;
 use crate::check::check_file;
 use crate::files::write_new;
-use crate::import::{ColumnOptions, ImportReport, ImportRequest, default_folder};
+use crate::import::{
+    ColumnOptions, ImportReport, ImportRequest, default_folder, deg_per_um_of_arm, import_mapped,
+};
 use crate::output::{Format, Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use clap::CommandFactory;
@@ -33,10 +35,14 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
         reduce_to_hz: args.reduce_to_hz,
         most_samples: args.max_samples,
         title: args.title.clone(),
-        deg_per_um: args.deg_per_um.or(args.arm_mm.map(|arm_mm| (1e-3 / arm_mm).to_degrees())),
+        deg_per_um: args.deg_per_um.or(args.arm_mm.map(deg_per_um_of_arm)),
         split: args.split,
     };
-    let result = ImportReport::from(crate::import::import(&request)?);
+    let imported = match &args.mapping {
+        Some(mapping) => import_mapped(request, mapping)?,
+        None => crate::import::import(&request)?,
+    };
+    let result = ImportReport::from(imported);
     warn(&result.warnings, Format::Details);
     print(&result.render(args.format)?)
 }

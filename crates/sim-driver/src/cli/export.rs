@@ -8,8 +8,9 @@ use crate::files::{DataError, Folder, Source, write_folder};
 use crate::flight::{flight_values, leaving};
 use crate::output::{Format, print};
 use crate::problem::{Fault, Place, Problem};
-use actuator_export::Target;
+use actuator_export::{ExportError, Monitor, Target, export_monitor, without_stages};
 use bench_study::stored::read_actuator;
+use preisach_dyn::ActuatorModel;
 use rotor_export::{DataFormat, controller_files, data_files};
 use rotor_flight::{controllers_of_case, exported_case, state_space_of_case};
 use std::fmt::Display;
@@ -26,6 +27,12 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
         return Err(refused(
             args,
             &"`--what` chooses numbers of a case for json, csv and mat; leave it out",
+        ));
+    }
+    if !args.monitor.is_empty() && !is_actuator_file(&source) {
+        return Err(refused(
+            args,
+            &"`--monitor` watches an actuator and this is a case; leave it out",
         ));
     }
     let (files, warnings) = if is_actuator_file(&source) {
@@ -61,10 +68,31 @@ fn actuator(args: &ExportArgs, source: &Source) -> Result<Written, SimError> {
             return Err(refused(args, &message));
         }
     };
-    let name = args.name.as_deref().unwrap_or("flap_actuator");
-    let files = actuator_export::export(&own.model, name, 1.0 / args.sampling_hz, target);
+    let (name, time_step_s) = (args.name.as_deref(), 1.0 / args.sampling_hz);
+    let files = if args.monitor.is_empty() {
+        actuator_export::export(&own.model, name.unwrap_or("flap_actuator"), time_step_s, target)
+    } else {
+        watching(args, &own.model, name.unwrap_or("flap_monitor"), target)
+    };
     let files = files.map_err(|error| refused(args, &error))?;
     Ok((as_bytes(files), actuator_export::remarks(&own.model)))
+}
+
+/// The monitor of the stages that are named.
+fn watching(
+    args: &ExportArgs,
+    extended: &ActuatorModel,
+    name: &str,
+    target: Target,
+) -> Result<Vec<(String, String)>, ExportError> {
+    let monitor = Monitor {
+        base: &without_stages(extended, &args.monitor)?,
+        extended,
+        cause: &args.monitor.join(", "),
+        threshold_deg: args.threshold_deg.unwrap_or_default(),
+        memory_s: args.memory_s,
+    };
+    export_monitor(&monitor, name, 1.0 / args.sampling_hz, target)
 }
 
 fn case(args: &ExportArgs, loaded: &LoadedCase) -> Result<Written, SimError> {

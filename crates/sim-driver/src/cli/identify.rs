@@ -18,7 +18,7 @@ use bench_study::figures::figure_files;
 use bench_study::identification::{BenchIdentification, IdentifyResult, MODELS_COMPARED};
 use bench_study::page::{bench_page, curves_page};
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
-use measured_data::EvenRecord;
+use measured_data::{EvenRecord, default_model_file};
 use preisach_dyn::identify::Settings;
 use report_page::MADE_HERE;
 use std::path::{Path, PathBuf};
@@ -44,24 +44,27 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         Some(path) => read_actuator(&Source::read(path)?)?.settings,
         None => Settings::default(),
     };
-    refuse_inside(&args.bench, &args.output)?;
-    refuse_inputs(args.start.as_deref(), Some(&args.output))?;
-    let page_path = page_path(&args.output);
+    let output = &args.output.clone().unwrap_or_else(|| default_model_file(&args.bench));
+    refuse_inside(&args.bench, output)?;
+    refuse_inputs(args.start.as_deref(), Some(output))?;
+    let page_path = page_path(output);
     if let Some(path) = &page_path {
         refuse_inside(&args.bench, path)?;
     }
     if !args.force {
-        refuse_other_kind(&args.output, "Actuator")?;
+        refuse_other_kind(output, "Actuator")?;
         if let Some(path) = &page_path {
             refuse_other_text(path, MADE_HERE, "page of hhc")?;
         }
     }
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
+    let (glances, subject) = bench_study::glances(&data);
+    warn(&bench_study::compared(&glances, subject), args.format.form());
     let progress = Progress::new(MODELS_COMPARED);
     progress.begin(0, &format!("identifying from {} runs", data.run_count()));
-    let [written, page_written_to] = [Some(&args.output), page_path.as_ref()]
-        .map(|path| path.map(|path| path.display().to_string()));
+    let [written, page_written_to] =
+        [Some(output), page_path.as_ref()].map(|path| path.map(|path| path.display().to_string()));
     let found = identified_data(&data, &base, Some(&|| progress.step()));
     progress.finish();
     let found = match found? {
@@ -82,7 +85,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     };
     let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
     warn(&actuator_warnings(&found.stored, place), args.format.form());
-    write_actuator(&found.stored, &args.output)?;
+    write_actuator(&found.stored, output)?;
     if let Some(path) = &page_path {
         write_atomic(path, found.page.as_bytes())?;
     }

@@ -231,3 +231,57 @@ fn t_handed_back_flies_the_same_flight() {
     let said = "expected the JSON of `hhc export --what t`";
     place.hhc(&["check", "handed.ron"]).rejected(&["broken.json:", said]);
 }
+
+const WORN: &str = "(kind: Actuator, title: \"worn\", model: (
+    law: Linear(gain_deg_per_volt: 0.12, bias_volt: 65),
+    range_volt: (-20, 150),
+    calibration: (deg_per_um: 0.04, zero_um: 0),
+    linkage: [Backlash(width_um: 6)],
+))";
+
+#[test]
+fn a_named_cause_leaves_as_its_monitor() {
+    let place = Place::new();
+    place.write("worn.ron", WORN);
+    let with = |more: &[&str]| {
+        place.hhc(&[&["export", "worn.ron", "--monitor", "Backlash", "-o", "w"], more].concat())
+    };
+    let told = with(&["--to", "json", "--threshold-deg", "0.02"]).done();
+    assert!(told.contains("flap_monitor.json written to w"), "{told}");
+    let json: serde_json::Value = serde_json::from_str(&place.read("w/flap_monitor.json")).unwrap();
+    assert_eq!((&json["cause"], &json["threshold_deg"]), (&"Backlash".into(), &0.02.into()));
+    assert_eq!(json["extended"]["linkage"][0]["kind"], "Backlash");
+    std::fs::remove_dir_all(place.path().join("w")).unwrap();
+    with(&["--to", "c"]).rejected(&["--threshold-deg"]);
+    with(&["--to", "matlab", "--threshold-deg", "1"]).rejected(&["in C, Python or JSON"]);
+    with(&["--to", "c", "--threshold-deg", "-1"])
+        .rejected(&["the threshold is -1, expected a positive"]);
+    let args = [
+        "export",
+        "worn.ron",
+        "--to",
+        "c",
+        "-o",
+        "w",
+        "--threshold-deg",
+        "1",
+        "--monitor",
+        "Delay",
+    ];
+    place.hhc(&args).rejected(&["there is no stage `Delay` among those of the actuator: Backlash"]);
+    place.write("case.ron", QUICK_CASE);
+    let args = [
+        "export",
+        "case.ron",
+        "--to",
+        "json",
+        "-o",
+        "w",
+        "--threshold-deg",
+        "1",
+        "--monitor",
+        "Delay",
+    ];
+    place.hhc(&args).rejected(&["`--monitor` watches an actuator and this is a case"]);
+    assert_eq!(place.listing(), ["case.ron", "worn.ron"], "nothing is written");
+}

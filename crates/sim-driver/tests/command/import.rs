@@ -319,11 +319,9 @@ fn jitter_is_resampled_and_gaps_are_refused() {
 fn formats_that_are_not_read() {
     let place = Place::new();
     place.write("new.mat", &format!("{:<512}\u{89}", "MATLAB 7.3 MAT-file, Platform: GLNXA64"));
-    place
-        .hhc(&["import", "new.mat"])
-        .rejected(&["new.mat: is an HDF5 file (MATLAB's format 7.3)", "'-v7'"]);
+    place.hhc(&["import", "new.mat"]).rejected(&["new.mat: is an HDF5 file", "'-v7'"]);
     place.write("old.mat", "\0\0\0\0\u{5}\0\0\0\u{1}\0\0\0\0\0\0\0\u{2}\0\0\0u\0________________________________________");
-    place.hhc(&["import", "old.mat"]).rejected(&["old.mat: is a MATLAB file of format 4", "'-v7'"]);
+    place.hhc(&["import", "old.mat"]).rejected(&["old.mat: `u` is no matrix of several columns"]);
     place.write("page.html", "<html>");
     place.hhc(&["import", "page.html"]).rejected(&["is a page or XML, no table", "as CSV"]);
     place.hhc(&["import", "gone.csv"]).rejected(&["gone.csv: cannot be read"]);
@@ -534,7 +532,7 @@ fn a_mat_file_of_another_program() {
     let columns = "time_ms=t,command_V=u,displacement_um=x";
     let args = ["import", &file, "--variable", "bench.run(2)", "--columns", columns, "-o", "d"];
     let text = place.hhc(&args).done();
-    assert!(text.contains("MAT file of level 5, bench.run(2): t, u, x of 400 samples"), "{text}");
+    assert!(text.contains("MAT file, bench.run(2): t, u, x of 400 samples"), "{text}");
     assert!(text.contains("400 samples, step 0.001 s"), "{text}");
     place.hhc(&["check", "d"]).done();
     place.hhc(&["import", &file, "-o", "e"]).rejected(&[

@@ -109,6 +109,28 @@ fn factors_and_offsets_are_applied_and_noted() {
     }
 }
 
+/// What a recorder always needs, once in a file.
+#[test]
+fn a_mapping_stands_for_the_options() {
+    let place = Place::new();
+    let text = recorded(4.3, |t| sine(t) / 15.0, |y| 15.0 * y / 100.0 + 3.0);
+    place.write("a.csv", &text.replacen("time_s,command_V,displacement_um", "t,Mon,Laser", 1));
+    let map = "(columns: [
+        (name: \"time_s\", from: \"t\"),
+        (name: \"command_V\", from: \"Mon\", scale: 15),
+        (name: \"displacement_um\", from: \"Laser\", scale: 100, offset: -300),
+    ])";
+    place.write("map.ron", map);
+    let text = place.hhc(&["import", "a.csv", "--mapping", "map.ron", "-o", "b"]).done();
+    assert!(text.contains("60 V about 70 V"), "{text}");
+    place.write("map.ron", &map.replace("Laser", "Lidar"));
+    place.hhc(&["import", "a.csv", "--mapping", "map.ron", "-o", "c"]).rejected(&[
+        "map.ron:4:",
+        "columns[2].from: is refused: names the column `Lidar`, which a.csv does not have",
+    ]);
+    place.hhc(&["import", "a.csv", "--mapping", "gone.ron", "-o", "c"]).rejected(&["gone.ron"]);
+}
+
 #[test]
 fn runs_in_one_file_have_their_own_period() {
     let place = Place::new();
@@ -139,6 +161,36 @@ fn runs_in_one_file_have_their_own_period() {
     place.hhc(&["import", "again.csv", "-o", "e"]).rejected(&["time_s"]);
     place.hhc(&["import", "again.csv", "-o", "e", "--split"]).done();
     assert!(place.listing().contains(&"e/again_2.csv".to_owned()));
+}
+
+/// Runs of one file are judged each in its window, and beside one another, at import and by identify.
+#[test]
+fn runs_of_one_file_are_held_against_each_other() {
+    let place = Place::new();
+    // the second run, a third as large, is cut off below the first one's top
+    let cut = |t: f64, y: f64| if t > 5.0 { y.min(190.0) } else { y };
+    let mut text = String::new();
+    for (i, line) in recorded(10.0, two_runs, |y| y).lines().enumerate() {
+        let (start, um) = line.rsplit_once(',').unwrap();
+        let um = match um.parse::<f64>() {
+            Ok(um) if i > 0 => format!("{:.5}", cut(1e-3 * (i - 1) as f64, um)),
+            _ => um.to_owned(),
+        };
+        writeln!(text, "{start},{um}").unwrap();
+    }
+    place.write("two.csv", &text);
+    let err = place.hhc(&["import", "two.csv", "-o", "cut", "--split"]).err;
+    assert!(err.contains("record two_2: the output rests at 190.0"), "{err}");
+    assert!(!err.contains("record two: the output rests"), "{err}");
+    assert!(err.contains("record two_2: its output rests at 190 um, which two passes"), "{err}");
+    let err = place.hhc(&["identify", "cut", "-o", "cut.ron", "--model", "linear"]).err;
+    assert!(err.contains("record two_2: its output rests at 190 um, which two passes"), "{err}");
+    // the sensor was turned round between two records of one file
+    let one = recorded(4.0, sine, |y| y);
+    let turned = recorded(4.0, sine, |y| -y);
+    place.write("turned.csv", &(one + turned.split_once('\n').unwrap().1));
+    let err = place.hhc(&["import", "turned.csv", "-o", "turned", "--split"]).err;
+    assert!(err.contains("falls as the command rises in turned_2, and rises in turned"), "{err}");
 }
 
 #[test]
@@ -174,6 +226,16 @@ fn identify_replaces_actuator_files_only() {
     place.hhc(&to("a.ron")).done();
     place.hhc(&[&to("case.ron")[..], &["--force"]].concat()).done();
     assert!(place.read("case.ron").contains("kind: Actuator"));
+    // without -o: the name of the folder, where nothing else is
+    let unnamed = ["identify", "bench", "--model", "linear"];
+    place.hhc(&unnamed).done();
+    assert!(place.read("bench.ron").contains("kind: Actuator"));
+    place.hhc(&unnamed).done();
+    place.write("bench.html", "mine");
+    place.hhc(&unnamed).rejected(&["bench.html exists already and is no page of hhc", "--force"]);
+    place.write("bench.ron", "(title: \"mine, by hand\")");
+    place.hhc(&unnamed).rejected(&["bench.ron exists already and is no file of kind Actuator"]);
+    assert_eq!(place.read("bench.ron"), "(title: \"mine, by hand\")");
 }
 
 #[test]

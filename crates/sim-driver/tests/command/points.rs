@@ -213,6 +213,7 @@ fn a_sweep_of_a_rotor_is_imported_checked_and_diagnosed() {
     }
     place.write("sweep.csv", &text);
     let told = place.hhc(&["import", "sweep.csv", "-o", "data"]).done();
+    assert!(told.contains(" points\n") && !told.contains("NaN"), "{told}");
     assert!(told.contains("kind RotorSweep"), "{told}");
     assert_eq!(place.hhc(&["check", "data", "--format", "json"]).json()["kind"], "rotor_sweep");
     let told = place.hhc(&["diagnose", "case.ron", "--data", "data", "-o", "out"]).done();

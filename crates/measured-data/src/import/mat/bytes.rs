@@ -59,7 +59,8 @@ impl<'a> Bytes<'a> {
         ))
     }
 
-    fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
+    /// The next `count` bytes.
+    pub(super) fn take(&mut self, count: usize) -> Result<&'a [u8], Fault> {
         let end = self.at.checked_add(count).filter(|end| *end <= self.data.len());
         let end =
             end.ok_or_else(|| self.fault("it ends inside an element: the file is truncated"))?;
@@ -68,7 +69,8 @@ impl<'a> Bytes<'a> {
         Ok(bytes)
     }
 
-    fn u32(&mut self) -> Result<u32, Fault> {
+    /// The next word.
+    pub(super) fn u32(&mut self) -> Result<u32, Fault> {
         let bytes = self.take(4)?;
         Ok(self.word(bytes))
     }

@@ -36,55 +36,20 @@ const MOST_DECOMPRESSED: usize = 1 << 30;
 /// Length of the header.
 pub(super) const HEADER: usize = 128;
 
-/// Whether a MAT file is little-endian, by its first bytes; none if it is no MAT file. `named_mat`: the
-/// file's name ends in `.mat`, without which level 4, which has no signature, is not looked for.
-///
-/// # Errors
-/// What to do with an HDF5 file, MATLAB's format 7.3, or one of level 4.
-pub(in crate::import) fn byte_order(start: &[u8], named_mat: bool) -> Option<Result<bool, Fault>> {
-    const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
-    let other = |message: &str| Some(Err(Fault::Other(message.to_owned())));
-    if start.starts_with(HDF5)
-        || start.get(512..).is_some_and(|s| s.starts_with(HDF5))
-        || start.starts_with(b"MATLAB 7.3")
-    {
-        return other(
-            "is an HDF5 file (MATLAB's format 7.3), which is not read; in MATLAB: load it and save('file.mat', '-v7', 'your_variable')",
-        );
+/// Whether a file of level 5 is little-endian, by its header.
+pub(super) fn level_5(start: &[u8]) -> Option<bool> {
+    match start.get(124..128)? {
+        [0, 1, b'I', b'M'] => Some(true),
+        [1, 0, b'M', b'I'] => Some(false),
+        _ => None,
     }
-    match start.get(124..128) {
-        Some([0, 1, b'I', b'M']) => return Some(Ok(true)),
-        Some([1, 0, b'M', b'I']) => return Some(Ok(false)),
-        _ => {}
-    }
-    // level 4: the type MOPT, rows, columns, imaginary flag, length of the name
-    let is_four = |from_bytes: fn([u8; 4]) -> u32| {
-        let (words, _) = start.as_chunks();
-        let &[kind, _, _, is_imaginary, name] = words.first_chunk::<5>()?;
-        let kind = from_bytes(kind);
-        let digits = (kind / 1000, kind / 100 % 10, kind / 10 % 10, kind % 10);
-        let plausible = digits.0 <= 4 && digits.1 == 0 && digits.2 <= 5 && digits.3 <= 2;
-        let named = (1..=64).contains(&from_bytes(name));
-        (plausible && from_bytes(is_imaginary) <= 1 && named).then_some(())
-    };
-    if named_mat && is_four(u32::from_le_bytes).or(is_four(u32::from_be_bytes)).is_some() {
-        return other(
-            "is a MATLAB file of format 4, which is not read; in MATLAB: load it and save('file.mat', '-v7')",
-        );
-    }
-    None
 }
 
 /// Reads every variable of a MAT file of level 5.
 ///
 /// # Errors
-/// What is damaged, with the byte offset; a file of no such format.
-pub fn read_variables(file: &[u8]) -> Result<Variables, Fault> {
-    let unknown = || {
-        let at = Bytes::new(&[], 124.min(file.len()), true, false);
-        Err(at.fault("the header names no byte order: it is no MAT file of level 5"))
-    };
-    let little_endian = byte_order(file, true).unwrap_or_else(unknown)?;
+/// What is damaged, with the byte offset.
+pub(super) fn variables(file: &[u8], little_endian: bool) -> Result<Variables, Fault> {
     let body = file.get(HEADER..).unwrap_or_default();
     let mut bytes = Bytes::new(body, HEADER, little_endian, false);
     let mut variables = Variables::new();

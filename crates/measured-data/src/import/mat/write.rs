@@ -91,7 +91,7 @@ fn structures(all: &[&Vec<(String, MatValue)>]) -> Vec<u8> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::value::read_variables;
+    use super::super::read_variables;
     use super::*;
 
     /// One number, byte by byte by the document of the format.

@@ -6,6 +6,7 @@
 use super::numbers::{number, stamp};
 use super::preamble::{Preamble, is_key, is_unit_key, unit_of};
 use super::row::Row;
+use crate::import::columns::{Choice, ColumnOptions};
 use crate::problem::Fault;
 use crate::tables::{Channel, Dimension};
 
@@ -167,6 +168,15 @@ impl Block {
         )
     }
 
+    /// Whether a column counts the rows, some of which may be missing: whole numbers, most of them one more than the last.
+    fn counts(&self, column: usize) -> bool {
+        let values: Vec<f64> = self.column(column).filter(|value| value.is_finite()).collect();
+        let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+        let by_one = steps.filter(|step| (step - 1.0).abs() < 1e-9).count();
+        let is_whole = values.iter().all(|value| value.fract().abs() < 1e-9);
+        is_whole && values.len() > 3 && 10 * by_one >= 9 * (values.len() - 1)
+    }
+
     /// The numbers of a column in the head.
     fn column(&self, column: usize) -> impl Iterator<Item = f64> {
         let rows = self.rows[self.start..self.end].iter().filter(|row| !row.is_comment);
@@ -211,6 +221,8 @@ pub(super) struct Layout {
     pub(super) stamps: Vec<usize>,
     /// Time between two rows that is stated above them, s.
     pub(super) step_s: Option<f64>,
+    /// Columns that count the rows.
+    counters: Vec<usize>,
 }
 
 impl Layout {
@@ -259,9 +271,30 @@ impl Layout {
             numeric: block.numeric.clone(),
             stamps,
             step_s: preamble.step_s,
+            counters: Vec::new(),
         };
         layout.name(&block, extra, &preamble);
+        let is_time = |i: usize| {
+            let of_time = |c: Channel| c.unit.dimension == Dimension::Time;
+            let name = layout.names.as_ref().map_or("", |names| &names[i]);
+            is_time_word(name) || Channel::parse(name).is_some_and(of_time)
+        };
+        // who leaves a time out has his reasons
+        let counters = block.numeric.iter().copied();
+        layout.counters = counters.filter(|i| !is_time(*i) && block.counts(*i)).collect();
         Ok(Some(layout))
+    }
+
+    /// A column that counts the rows and is not taken; none that `-` leaves out in its place of `--columns`.
+    pub(super) fn counter(&self, choice: &Choice, options: &ColumnOptions) -> Option<usize> {
+        let entries: Vec<&str> =
+            options.columns.iter().flat_map(|text| text.split(',')).map(str::trim).collect();
+        let in_place = entries.len() == self.width;
+        let is_free = |column: usize| {
+            let is_taken = choice.taken().any(|taken| taken.source == column);
+            !(is_taken || in_place && entries[column] == "-")
+        };
+        self.counters.iter().copied().find(|column| is_free(*column))
     }
 
     /// Whether it holds a time and one channel, which another table may complete.

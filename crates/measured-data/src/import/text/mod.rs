@@ -153,23 +153,37 @@ pub(super) fn read_csv(
         .map_err(|fault| Problem::new(place.clone(), fault))?;
     let cell = |i: usize| HeaderCell::new(own.map_or("", |own| &own[i]), place.clone());
     let header = (0..layout.width).map(cell).collect();
-    let table = TextTable::behind(file, rows, (layout.separator, layout.before), header);
+    let mut table = TextTable::behind(file, rows, (layout.separator, layout.before), header);
+    let is_untimed = choice.time.is_none();
+    if is_untimed {
+        table = table.with_blank_rows();
+    }
+    let counter = layout.counter(&choice, options).filter(|_| is_untimed);
     let mut problems = Problems::default();
     let mut gather = choice.gather(file, reduction);
-    let wanted: Vec<_> = choice.taken().map(|t| (t.source, t.channel.label())).collect();
+    let mut wanted: Vec<_> = choice.taken().map(|t| (t.source, t.channel.label())).collect();
+    wanted.extend(counter.map(|column| (column, "number of the row".to_owned())));
     let read = |column: usize, text: &str| {
         let value = number(text, layout.decimal);
         let value = value.or_else(|| stamp(text).filter(|_| layout.stamps.contains(&column)));
+        let value = value.or((counter == Some(column)).then_some(f64::NAN));
         value.ok_or_else(|| Fault::NotANumber { text: text.to_owned() })
     };
     let (mut last_line, mut behind) = (0, 0);
     let mut origin = choice.time.is_none().then_some(0.0);
     let most_s = if choice.time.is_some() { f64::INFINITY } else { LARGEST };
-    table.numbers(&wanted, read, &mut problems, |numbers, line, problems| {
+    table.numbers(&wanted, read, &mut problems, |numbers, at, problems| {
         let Some(numbers) = numbers else {
             behind += 1;
             return gather.leave_out();
         };
+        let line = at.line;
+        if is_untimed {
+            gather.blank_lines(at.blank_before, line, problems);
+        }
+        if let (Some(_), Some(number)) = (counter, numbers.last()) {
+            gather.counted(*number, line, problems);
+        }
         let mut row: Vec<f64> = choice.converted(numbers.iter().copied()).collect();
         let zero = *origin.get_or_insert(if row[0] > CLOCK_S { row[0] } else { 0.0 });
         row[0] -= zero;

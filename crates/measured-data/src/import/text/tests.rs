@@ -159,6 +159,69 @@ fn readings_that_could_be_wrong() {
     assert!(error(text, "").contains("`time_s` is not a number"), "{}", error(text, ""));
 }
 
+/// Without a time the number of a row is its time: no row may vanish.
+#[test]
+fn rows_that_are_missing_move_no_later_sample() {
+    let wave = |k: usize| (10 * k * k) % 97;
+    let table = |row: &dyn Fn(usize) -> String| -> String { (0..60).map(row).collect() };
+    let at_rate = |text: &str, columns: &str, split: bool| {
+        let reduction = Reduction { sampling_hz: Some(100.0), split, ..REDUCTION };
+        read_with(Cursor::new(text.to_owned()), &options(columns), reduction)
+            .map(|table| table.parts)
+            .map_err(|problems| problems.to_string())
+    };
+    let full = |k: usize| format!("{};{}\n", wave(k), 2 * wave(k));
+    let truth = at_rate(&format!("u [V];x [um]\n{}", table(&full)), "", false).unwrap();
+    // three rows of blank cells are filled and counted
+    let blank = |k: usize| if (20..23).contains(&k) { ";\n".to_owned() } else { full(k) };
+    let found = at_rate(&format!("u [V];x [um]\n{}", table(&blank)), "", false).unwrap();
+    assert_eq!(found[0].columns[0][23..], truth[0].columns[0][23..]);
+    assert_eq!((found[0].count, found[0].time_s.len()), (60, 60));
+    let said = found[0].warnings[0].to_string();
+    assert!(said.contains("3 samples without a number are filled by straight lines"), "{said}");
+    // eleven are more than that
+    let blank = |k: usize| if (20..31).contains(&k) { ";\n".to_owned() } else { full(k) };
+    let text = format!("u [V];x [um]\n{}", table(&blank));
+    let said = at_rate(&text, "", false).unwrap_err();
+    assert!(said.contains("r.csv:33:1: 11 samples before") && said.contains("--split"), "{said}");
+    assert_eq!(at_rate(&text, "", true).unwrap().len(), 2);
+    // an empty line says nothing: refused, and parted as the remedy says
+    for line in ["\n", "  \r\n"] {
+        let empty = |k: usize| if k == 30 { line.to_owned() + &full(k) } else { full(k) };
+        let text = format!("u [V];x [um]\n{}", table(&empty));
+        let said = at_rate(&text, "", false).unwrap_err();
+        assert!(said.contains("r.csv:33:1: 1 blank lines before this row"), "{said}");
+        let parts = at_rate(&text, "", true).unwrap();
+        assert_eq!(parts.iter().map(|part| part.count).collect::<Vec<_>>(), [30, 30]);
+    }
+    // an empty line behind every row is a habit, and one in a table with a time is harmless
+    let double = |k: usize| full(k) + "\n";
+    let found = at_rate(&format!("u [V];x [um]\n{}", table(&double)), "", false).unwrap();
+    assert_eq!(found[0].columns, truth[0].columns);
+    let timed = |k: usize| format!("{k};{}{}", full(k), if k == 30 { "\n" } else { "" });
+    let text = format!("t [ms];u [V];x [um]\n{}", table(&timed));
+    assert_eq!(read(&text, "").unwrap().parts[0].columns, truth[0].columns);
+    // rows that their numbers miss
+    let numbered = |k: usize| match k {
+        20..23 => String::new(),
+        _ => format!("{};{}", k + 1, full(k)),
+    };
+    let text = format!("n;u [V];x [um]\n{}", table(&numbered));
+    let found = at_rate(&text, "", false).unwrap();
+    assert_eq!(found[0].columns[0][23..], truth[0].columns[0][23..]);
+    // unless the user leaves them out
+    assert_eq!(at_rate(&text, "-,u_V,x_um", false).unwrap()[0].count, 57);
+    // numbers that begin again, at the end of a counter or in another record
+    let byte = |k: usize| format!("{};{}", (k + 230) % 256, full(k));
+    let text = format!("n;u [V];x [um]\n{}", table(&byte));
+    assert_eq!(at_rate(&text, "", false).unwrap()[0].columns, truth[0].columns);
+    let again = |k: usize| format!("{};{}", k % 30, full(k));
+    let text = format!("n;u [V];x [um]\n{}", table(&again));
+    let said = at_rate(&text, "", false).unwrap_err();
+    assert!(said.contains("the numbers of the rows go from 29 to 0"), "{said}");
+    assert_eq!(at_rate(&text, "", true).unwrap().len(), 2);
+}
+
 /// A text table that is made while it is read: `rows` rows, 1 kHz.
 struct Endless {
     rows: usize,

@@ -52,15 +52,16 @@ impl FlatTop {
     /// The cut of a record's output, the upper one of two; none if there is none that noise and the
     /// sampling (some 50 samples from end to end) let see.
     pub(crate) fn of(record: &BenchRecord, drive: &Drive, is_slow: bool) -> Option<Self> {
-        let fine = Fine::of(&record.output_deg);
+        let judged = record.judged_samples();
+        let (y, u) = (&record.output_deg[judged.clone()], &record.voltage_volt[judged]);
+        let fine = Fine::of(y);
         let travel = |values: &[f64]| values.windows(2).map(|p| (p[1] - p[0]).abs()).sum::<f64>();
         let range_volt = 2.0 * drive.amplitude_volt;
-        let moving =
-            record.voltage_volt.windows(2).filter(|p| (p[1] - p[0]).abs() > 0.0).count() as f64;
-        let crossing = moving * range_volt / travel(&record.voltage_volt);
+        let moving = u.windows(2).filter(|p| (p[1] - p[0]).abs() > 0.0).count() as f64;
+        let crossing = moving * range_volt / travel(u);
         let (half, _) = split((SMOOTHED * crossing).clamp(0.0, MOST_SMOOTHED) / 2.0);
-        let output = smoothed(&record.output_deg, half);
-        let command = delayed(&smoothed(&record.voltage_volt, half), record, drive, is_slow);
+        let output = smoothed(y, half);
+        let command = delayed(&smoothed(u, half), record, drive, is_slow);
         let noise = fine.std_deg / ((2 * half + 1) as f64).sqrt() + fine.quantum_deg;
         let [low, high] = extremes(output.iter().copied());
         let depth = (DEPTH * noise).max(LEAST_DEPTH * (high - low));

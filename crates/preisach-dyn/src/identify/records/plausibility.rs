@@ -146,17 +146,16 @@ pub(crate) fn suspicions(record: &BenchRecord, drive: &Drive, is_slow: bool) -> 
     findings
 }
 
-/// Level and share of samples of an output that rests at its extreme, to the last digit, while the
+/// Level and share of the judged samples of an output that rests at its extreme, to the last digit, while the
 /// command moves.
 fn flat_output(record: &BenchRecord) -> Option<(f64, f64)> {
-    let (y, u) = (&record.output_deg, &record.voltage_volt);
+    let samples = record.judged_samples();
+    let (y, u) = (&record.output_deg[samples.clone()], &record.voltage_volt[samples]);
     let [u_low, u_high] = extremes(u);
     let [low, high] = extremes(y);
     let same = 1e-9 * (high - low);
     [high, low].into_iter().find_map(|level| {
-        let mut flat = 0;
-        let mut clipped = false;
-        let mut i = 0;
+        let (mut flat, mut clipped, mut i) = (0, false, 0);
         while i < y.len() {
             let run = y[i..].iter().take_while(|v| (*v - level).abs() <= same).count();
             if run >= FLAT_RUN {
