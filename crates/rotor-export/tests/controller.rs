@@ -19,8 +19,12 @@ const CYCLE_REV: [usize; 2] = [1, 2];
 const LIMIT_VOLT: f64 = 20.0;
 /// A load that is lost for some cycles, a jump of Z0, a flap that is lost.
 const LOAD_LOST: (usize, usize, usize) = (3, 60, 80);
-const JUMP_AT: usize = 110;
+/// Cycles from which Z0 is so many times that of the start.
+const ONE_JUMP: &[(usize, f64)] = &[(110, 5.0)];
+const TWO_JUMPS: &[(usize, f64)] = &[(110, 5.0), (113, 12.0)];
 const FLAP_LOST: (usize, usize) = (1, 180);
+/// Noise of a load, largest, nondimensional.
+const NOISE: f64 = 1e-5;
 /// Newton and newton metre of a nondimensional load of 1.
 const UNITS: [f64; 6] = [2.5e5, 2.5e5, 2.5e5, 1.2e6, 1.2e6, 1.2e6];
 /// Places in a line of what the program writes: controls, limit, loads, noise, what was observed, T.
@@ -171,7 +175,7 @@ impl Pilot {
 }
 
 /// Flies the controller of Rust: the samples, advance ratio first, and a line for every cycle.
-fn flown(spec: &ControllerSpec, noise: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
+fn flown(spec: &ControllerSpec, jumps: &[(usize, f64)]) -> (Vec<f64>, Vec<Vec<f64>>) {
     let mut pilot = Pilot::new(spec);
     let mut analyser = HarmonicAnalyser::new(6, SAMPLES, CYCLE_REV[1], &[4]).unwrap();
     let (mut samples, mut lines) = (Vec::new(), Vec::new());
@@ -183,7 +187,7 @@ fn flown(spec: &ControllerSpec, noise: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
             control[FLAP_LOST.0 * 4..].fill(0.0);
         }
         let moved = t_at(advance_ratio).loads_for(&control).unwrap();
-        let jump = if cycle < JUMP_AT { 1.0 } else { 5.0 };
+        let jump = jumps.iter().rfind(|(at, _)| cycle >= *at).map_or(1.0, |(_, size)| *size);
         let z: Vec<f64> =
             baseline().iter().zip(moved).map(|(rest, moved)| jump * rest + moved).collect();
         let mut found = Vec::new();
@@ -193,7 +197,7 @@ fn flown(spec: &ControllerSpec, noise: f64) -> (Vec<f64>, Vec<Vec<f64>>) {
             let hub: [f64; 6] = std::array::from_fn(|c| {
                 let four = z[2 * c] * (4.0 * psi).cos() + z[2 * c + 1] * (4.0 * psi).sin();
                 let others = 1e-3 * (0.3 + (3.0 * psi).cos() - 2.0 * psi.sin());
-                UNITS[c] * (four + others + noise * draw(cycle * 100_000 + k * 10 + c))
+                UNITS[c] * (four + others + NOISE * draw(cycle * 100_000 + k * 10 + c))
             });
             samples.push(advance_ratio);
             samples.extend(hub);
@@ -327,9 +331,9 @@ fn largest(lines: &[Vec<f64>], others: &[Vec<f64>], columns: std::ops::Range<usi
     pairs.fold(0.0, f64::max)
 }
 
-fn flies_alike(knowledge: TKnowledge, name: &str, noise: f64) -> Vec<Vec<f64>> {
+fn flies_alike(knowledge: TKnowledge, name: &str, jumps: &[(usize, f64)]) -> Vec<Vec<f64>> {
     let spec = spec(knowledge);
-    let (samples, expected) = flown(&spec, noise);
+    let (samples, expected) = flown(&spec, jumps);
     let found = in_c(&spec, name, &samples);
     assert_eq!(found.len(), CYCLES);
     let (limit, loads) = (CONTROLS, CONTROLS + 1..CONTROLS + 13);
@@ -357,23 +361,21 @@ fn flies_alike(knowledge: TKnowledge, name: &str, noise: f64) -> Vec<Vec<f64>> {
 
 #[test]
 fn a_fixed_t_gives_the_voltages_of_rust() {
-    flies_alike(TKnowledge::Fixed(t_at(0.15)), "pilot_fixed", 1e-5);
+    flies_alike(TKnowledge::Fixed(t_at(0.15)), "pilot_fixed", ONE_JUMP);
 }
 
 #[test]
 fn a_scheduled_t_gives_the_voltages_of_rust() {
-    let own = flies_alike(scheduled(), "pilot_scheduled", 1e-5);
+    let own = flies_alike(scheduled(), "pilot_scheduled", ONE_JUMP);
     // and others than the T of one speed
-    let (_, fixed) = flown(&spec(TKnowledge::Fixed(t_at(0.18))), 1e-5);
+    let (_, fixed) = flown(&spec(TKnowledge::Fixed(t_at(0.18))), ONE_JUMP);
     assert!(largest(&own, &fixed, 0..CONTROLS) > 0.1);
 }
 
 #[test]
 fn an_estimated_t_gives_the_voltages_of_rust() {
-    let own = flies_alike(adaptive(None), "pilot_adaptive", 1e-5);
-    let observed =
-        |code: f64| own.iter().filter(|line| (line[CONTROLS + 14] - code).abs() < 0.5).count();
-    assert!(observed(1.0) > 0, "the jump of Z0 is seen");
+    let own = flies_alike(adaptive(None), "pilot_adaptive", ONE_JUMP);
+    assert!(observed(&own, 1.0) > 0, "the jump of Z0 is seen");
     let t = CONTROLS + 15..LINE;
     let learnt = largest(&own[..1], &own[CYCLES - 1..], t);
     assert!(learnt > 1e-6, "T is learnt: {learnt}");
@@ -381,7 +383,23 @@ fn an_estimated_t_gives_the_voltages_of_rust() {
 
 #[test]
 fn an_estimated_t_with_its_noise_told_gives_the_voltages_of_rust() {
-    flies_alike(adaptive(Some(0.01)), "pilot_told", 1e-5);
+    flies_alike(adaptive(Some(0.01)), "pilot_told", ONE_JUMP);
+}
+
+/// Cycles of which a code of what was observed stands in the lines.
+fn observed(lines: &[Vec<f64>], code: f64) -> usize {
+    lines.iter().filter(|line| (line[CONTROLS + 14] - code).abs() < 0.5).count()
+}
+
+/// A second jump soon after the first frees T too: in C as in Rust, and T then goes another way than after one jump.
+#[test]
+fn a_jump_that_frees_t_gives_the_voltages_of_rust() {
+    for (knowledge, name) in
+        [(adaptive(None), "pilot_freed"), (adaptive(Some(0.01)), "pilot_freed_told")]
+    {
+        let own = flies_alike(knowledge, name, TWO_JUMPS);
+        assert!(observed(&own, 1.0) > 0 && observed(&own, 2.0) > 0, "{name}: T is freed");
+    }
 }
 
 #[test]
