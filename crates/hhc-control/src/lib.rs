@@ -72,7 +72,9 @@ pub use error::{ControlError, RunError};
 pub use feedback::FeedbackController;
 pub use front::{FrontPoint, SecondCost};
 pub use identify::identify_t;
-pub use law::{FeedbackLaw, LagLoss, LoadMargin, OperatingPoint, TMargins, TMatrix, lag_loss};
+pub use law::{
+    FeedbackLaw, LagLoss, LoadMargin, OperatingPoint, RelaxedStep, TMargins, TMatrix, lag_loss,
+};
 pub use layout::{ControlLayout, lag_deg};
 pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
 pub use plant::{LinearPlant, Measurement, Plant};

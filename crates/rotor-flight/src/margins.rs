@@ -2,7 +2,7 @@
 
 use crate::flying_case::FlyingCase;
 use crate::{FlightError, FlightState};
-use hhc_control::{FeedbackLaw, TMatrix};
+use hhc_control::{FeedbackLaw, RelaxedStep, TMatrix};
 use rayon::prelude::*;
 use rotor_study::HubLoads;
 use serde::Serialize;
@@ -85,22 +85,20 @@ impl FlyingCase<'_> {
         let t_at = |mu: f64| flight.own_t_in(at(mu), &steps);
         let knots = self.path().advance_ratios();
         let each = knots.iter().map(|&mu| t_at(mu)).collect::<Result<Vec<TMatrix>, _>>()?;
-        let (weights, rho, gain) =
-            (&flight.settings.load_weights, flight.settings.effort_weight, flight.settings.gain);
+        let (weights, step) = (&flight.settings.load_weights, flight.settings.step());
         let point = |(k, &advance_ratio): (usize, &f64)| -> Result<MarginPoint, FlightError> {
             let state = at(advance_ratio);
             let law = FeedbackLaw::new(&flight.t_in(state, &steps)?, weights)?;
             let baseline = flight.path.loads(state, &[])?;
-            let found = law.margins(&flight.layout, rho, gain, &baseline)?;
+            let found = law.margins(&flight.layout, step, &baseline)?;
             let loads = (0..HubLoads::NAMES.len())
-                .map(|load| law.load_margin(rho, gain, load))
+                .map(|load| law.load_margin(step, load))
                 .collect::<Result<Vec<_>, _>>()?;
-            let radii = |gain: f64| -> Result<Vec<f64>, FlightError> {
-                each.iter()
-                    .map(|there| Ok(law.relaxed_spectral_radius(rho, gain, there)?))
-                    .collect()
+            let radii = |step: RelaxedStep| -> Result<Vec<f64>, FlightError> {
+                each.iter().map(|there| Ok(law.relaxed_spectral_radius(step, there)?)).collect()
             };
-            let whole = |mu: f64| Ok(law.relaxed_spectral_radius(rho, 1.0, &t_at(mu)?)?);
+            let whole_step = RelaxedStep { gain: 1.0, ..step };
+            let whole = |mu: f64| Ok(law.relaxed_spectral_radius(whole_step, &t_at(mu)?)?);
             Ok(MarginPoint {
                 advance_ratio,
                 condition: law.condition(),
@@ -110,8 +108,8 @@ impl FlyingCase<'_> {
                 flap_overshoot_deg: found.flap_overshoot_deg,
                 load_phase_deg: loads.iter().map(|margin| margin.phase_deg).collect(),
                 load_gain: loads.iter().map(|margin| margin.gain).collect(),
-                radius: radii(gain)?,
-                whole_step_radius: radii(1.0)?,
+                radius: radii(step)?,
+                whole_step_radius: radii(whole_step)?,
                 holds_within: [
                     reach(&knots[..=k], true, whole)?,
                     reach(&knots[k..], false, whole)?,

@@ -1,6 +1,6 @@
 //! How wrong a constant T may be before the loop diverges.
 
-use crate::{ControlError, ControlLayout, Cost, FeedbackLaw, TMatrix};
+use crate::{ControlError, ControlLayout, Cost, FeedbackLaw, OperatingPoint, RelaxedStep, TMatrix};
 use std::ops::Range;
 
 /// The least error of T, one at a time, at which the spectral radius of (C.14) reaches 1 or the loads overshoot.
@@ -47,8 +47,7 @@ impl FeedbackLaw {
     /// | argument | meaning | unit | range |
     /// |---|---|---|---|
     /// | `layout` | of the controls of T | - | |
-    /// | `rho` | control weight, held | 1/V^2 | >= 0 |
-    /// | `gain` | part of the way that a step goes | - | above 0, at most 1 |
+    /// | `step` | weights of control and change, held, and part of the way | 1/V^2, - | as [`RelaxedStep`] |
     /// | `baseline` | loads `Z0` without control | nondimensional | one per row of T |
     ///
     /// With `rho = 0` an error of one flap alone has the same margin of convergence as one of all: `T0^+ T` is the error
@@ -59,8 +58,7 @@ impl FeedbackLaw {
     pub fn margins(
         &self,
         layout: &ControlLayout,
-        rho: f64,
-        gain: f64,
+        step: RelaxedStep,
         baseline: &[f64],
     ) -> Result<TMargins, ControlError> {
         let controls = layout.len();
@@ -70,12 +68,12 @@ impl FeedbackLaw {
                 size(&self.t().turned_within(part.clone(), 1.0, phase_rad)?)
             })
         };
-        let phase = |part| turned(part, &|there| self.relaxed_spectral_radius(rho, gain, there));
-        let overshoot = |part| turned(part, &|there| self.overshoot(rho, gain, there, baseline));
+        let phase = |part| turned(part, &|there| self.relaxed_spectral_radius(step, there));
+        let overshoot = |part| turned(part, &|there| self.overshoot(step, there, baseline));
         let largest = |part: Range<usize>| -> Result<f64, ControlError> {
             least_gain(|stronger| {
                 let stronger = self.t().turned_within(part.clone(), stronger, 0.0)?;
-                self.relaxed_spectral_radius(rho, gain, &stronger)
+                self.relaxed_spectral_radius(step, &stronger)
             })
         };
         let width = controls / layout.flaps();
@@ -95,15 +93,10 @@ impl FeedbackLaw {
     ///
     /// # Errors
     /// [`ControlError::OutOfRange`] for a load that T lacks; as [`Self::relaxed_spectral_radius`].
-    pub fn load_margin(
-        &self,
-        rho: f64,
-        gain: f64,
-        load: usize,
-    ) -> Result<LoadMargin, ControlError> {
+    pub fn load_margin(&self, step: RelaxedStep, load: usize) -> Result<LoadMargin, ControlError> {
         let radius = |of_load: f64, phase_rad: f64| {
             let there = self.t().with_load_turned(load, of_load, phase_rad)?;
-            self.relaxed_spectral_radius(rho, gain, &there)
+            self.relaxed_spectral_radius(step, &there)
         };
         Ok(LoadMargin {
             phase_deg: least_phase_deg(|phase_rad| radius(1.0, phase_rad))?,
@@ -115,8 +108,7 @@ impl FeedbackLaw {
     /// is no overshoot.
     fn overshoot(
         &self,
-        rho: f64,
-        gain: f64,
+        step: RelaxedStep,
         there: &TMatrix,
         baseline: &[f64],
     ) -> Result<f64, ControlError> {
@@ -126,8 +118,10 @@ impl FeedbackLaw {
         for _ in 0..OVERSHOOT_CYCLES {
             let mut outputs = there.loads_for(&control_volt)?;
             outputs.iter_mut().zip(baseline).for_each(|(output, z0)| *output += z0);
-            let aim = self.optimum_volt(rho, &control_volt, &outputs)?;
-            control_volt.iter_mut().zip(aim).for_each(|(here, to)| *here += gain * (to - *here));
+            let at = OperatingPoint { control_volt: &control_volt, outputs: &outputs };
+            let aim = self.aim_volt(step, at)?;
+            let moves = control_volt.iter_mut().zip(aim);
+            moves.for_each(|(here, to)| *here += step.gain * (to - *here));
             let cost = Cost::of(&outputs, self.load_weights(), &[], 0.0).loads;
             largest = largest.max(cost / before);
         }

@@ -7,6 +7,7 @@ mod t_matrix;
 
 pub use lag::{LagLoss, lag_loss};
 pub use margins::{LoadMargin, TMargins};
+pub use spectrum::RelaxedStep;
 pub use t_matrix::TMatrix;
 
 use crate::{ControlError, LoadWeights, error};

@@ -1,7 +1,32 @@
 //! Whether a loop with a constant T contracts: the spectral radius of its iteration.
 
-use crate::{ControlError, FeedbackLaw, TMatrix, error};
+use crate::law::Proximal;
+use crate::{ControlError, FeedbackLaw, OperatingPoint, TMatrix, error};
 use nalgebra::DMatrix;
+
+/// The step of a loop with fixed cycles: `u <- u + gain (argmin J + s |u - u_here|^2  -  u_here)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelaxedStep {
+    /// `rho`, 1/V^2, 0 or above.
+    pub rho: f64,
+    /// `s`, the weight of the change from cycle to cycle, 1/V^2, 0 or above.
+    pub rate_weight: f64,
+    /// Part of the way that a step goes, above 0 and at most 1.
+    pub gain: f64,
+}
+
+impl RelaxedStep {
+    /// A step without weights that goes a part of the way.
+    pub fn of_gain(gain: f64) -> Self {
+        Self { rho: 0.0, rate_weight: 0.0, gain }
+    }
+
+    pub(super) fn check(&self) -> Result<(), ControlError> {
+        error::check_not_negative("control weight rho (1/V^2)", self.rho)?;
+        error::check_not_negative("rate weight (1/V^2)", self.rate_weight)?;
+        error::check_gain(self.gain)
+    }
+}
 
 impl FeedbackLaw {
     /// Largest factor by which an error of the control may be multiplied from step to step where the true
@@ -28,22 +53,23 @@ impl FeedbackLaw {
         rho: f64,
         there: &TMatrix,
     ) -> Result<f64, ControlError> {
-        self.relaxed_spectral_radius(rho, 1.0, there)
+        self.relaxed_spectral_radius(RelaxedStep { rho, rate_weight: 0.0, gain: 1.0 }, there)
     }
 
-    /// The same where a step goes only a part of the way, `gain` above 0 and at most 1: the eigenvalues of
-    /// `(1 - gain) I + gain M`.
+    /// The same where a step goes only a part of the way and its change is weighted:
+    ///
+    /// ```text
+    /// M = I - gain (T0' W_Z T0 + (rho + s) I)^-1 (T0' W_Z T + rho I)
+    /// ```
     ///
     /// # Errors
     /// As [`Self::iteration_spectral_radius`].
     pub fn relaxed_spectral_radius(
         &self,
-        rho: f64,
-        gain: f64,
+        step: RelaxedStep,
         there: &TMatrix,
     ) -> Result<f64, ControlError> {
-        error::check_not_negative("control weight rho (1/V^2)", rho)?;
-        error::check_gain(gain)?;
+        step.check()?;
         let (loads, controls) = self.shape();
         error::check_length("controls of the true T", there.controls(), controls)?;
         error::check_length("loads of the true T", there.loads(), loads)?;
@@ -51,10 +77,23 @@ impl FeedbackLaw {
         let mut iteration = DMatrix::identity(controls, controls);
         for (mut column, change) in iteration.column_iter_mut().zip(there.columns()) {
             let unit: Vec<f64> = column.iter().copied().collect();
-            column.copy_from_slice(&self.optimum_volt(rho, &unit, &change)?);
+            let at = OperatingPoint { control_volt: &unit, outputs: &change };
+            column.copy_from_slice(&self.aim_volt(step, at)?);
         }
+        let gain = step.gain;
         iteration = iteration * gain + DMatrix::identity(controls, controls) * (1.0 - gain);
         Ok(spectral_radius(iteration))
+    }
+
+    /// Where a step aims at from a measurement, the whole way, volt.
+    pub(super) fn aim_volt(
+        &self,
+        step: RelaxedStep,
+        at: OperatingPoint<'_>,
+    ) -> Result<Vec<f64>, ControlError> {
+        let target = self.modal_target(at)?;
+        let proximal = Proximal { weight: step.rate_weight, control_volt: at.control_volt };
+        Ok(self.optimum_near(step.rho, &target, proximal))
     }
 }
 
@@ -82,6 +121,22 @@ fn spectral_radius(mut matrix: DMatrix<f64>) -> f64 {
 mod tests {
     use super::*;
     use crate::LoadWeights;
+
+    /// Directions of one authority each: a weight `s` of the change leaves `1 - gain c / (c + s)` of an error.
+    #[test]
+    fn a_weighted_change_slows_the_loop_as_theory_says() {
+        let column = |j: usize| (0..6).map(|i| if i == j { 2.0 } else { 0.0 }).collect();
+        let t = TMatrix::from_columns(&(0..4).map(column).collect::<Vec<Vec<f64>>>()).unwrap();
+        let law = FeedbackLaw::new(&t, &LoadWeights::Identity).unwrap();
+        for (rho, rate_weight, gain) in [(0.0, 0.0, 0.5), (0.0, 4.0, 0.5), (1.0, 3.0, 1.0)] {
+            let step = RelaxedStep { rho, rate_weight, gain };
+            let found = law.relaxed_spectral_radius(step, &t).unwrap();
+            let exact = 1.0 - gain * (4.0 + rho) / (4.0 + rho + rate_weight);
+            assert!((found - exact).abs() < 1e-12, "{step:?}: {found} {exact}");
+        }
+        let wrong = RelaxedStep { rate_weight: -1.0, ..RelaxedStep::of_gain(0.5) };
+        assert!(law.relaxed_spectral_radius(wrong, &t).is_err());
+    }
 
     /// A T wrong by a complex factor: the radius is known.
     #[test]

@@ -2,7 +2,7 @@
 
 use super::estimator::{check_outputs, set_flag};
 use super::program::DiscProgram;
-use crate::{ControlError, ControlLayout, LoadWeights, TMatrix, error};
+use crate::{ControlError, ControlLayout, LoadWeights, RelaxedStep, TMatrix, error};
 use nalgebra::{DMatrix, DVector};
 
 /// Weights and limits of a relaxed controller.
@@ -33,6 +33,11 @@ impl RelaxedSettings {
             amplitude_limit_volt: vec![f64::INFINITY; layout.pairs()],
             rate_limit_volt: f64::INFINITY,
         }
+    }
+
+    /// The step without its limits.
+    pub fn step(&self) -> RelaxedStep {
+        RelaxedStep { rho: self.effort_weight, rate_weight: self.rate_weight, gain: self.gain }
     }
 }
 

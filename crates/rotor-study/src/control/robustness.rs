@@ -354,10 +354,9 @@ impl<'a> Flights<'a> {
     }
 
     fn margins(&self) -> Result<MarginLine, ControlError> {
-        let RelaxedSettings { load_weights, effort_weight, gain, .. } = &self.settings;
-        let law = FeedbackLaw::new(&self.t0, load_weights)?;
+        let law = FeedbackLaw::new(&self.t0, &self.settings.load_weights)?;
         let layout = self.plant.layout();
-        let found = law.margins(layout, *effort_weight, *gain, &self.baseline)?;
+        let found = law.margins(layout, self.settings.step(), &self.baseline)?;
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             condition: law.condition(),
