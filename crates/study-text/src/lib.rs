@@ -9,6 +9,7 @@
 //! | what control costs, and the fronts of `J` | `costs` |
 //! | rotating modes and the data of a fan plot | `modes` |
 //! | flaps against root pitch | `root_pitch` |
+//! | flights under noise, a wrong T and drift, and how wrong T may be | `robustness` |
 //! | names of sets and flaps | `names` |
 //! | a free wake: tables, geometry, the revolution for `ParaView` | `wake`, `revolution` |
 
@@ -18,6 +19,7 @@ mod costs;
 mod modes;
 mod names;
 mod revolution;
+mod robustness;
 mod root_pitch;
 mod wake;
 
@@ -26,6 +28,7 @@ pub use blade_loads::{blade_loads_csv, curvature_gap, moments_table, unlike_tabl
 pub use costs::{cost_sections, costs_csv, front_axis, front_sections, fronts_csv};
 pub use modes::{fan_csv, modes_text};
 pub use names::{flap_name, set_name};
+pub use robustness::{robustness_csv, robustness_pictures, robustness_sections};
 pub use root_pitch::root_pitch_text;
 pub use wake::{WakeFiles, vortices_csv, wake_files, wake_text};
 

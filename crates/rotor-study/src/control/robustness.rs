@@ -104,17 +104,39 @@ impl RobustnessCell {
     }
 }
 
+/// What stands in the place of a limit that there is not.
+pub const UNBOUNDED: &str = "unbounded";
+
+/// A number with so many digits, or all of them; a word where there is none.
+fn bounded(value: f64, is_found: bool, digits: Option<usize>) -> String {
+    match (is_found, digits) {
+        (false, _) => UNBOUNDED.to_owned(),
+        (true, Some(digits)) => format!("{value:.digits$}"),
+        (true, None) => value.to_string(),
+    }
+}
+
 impl MarginLine {
+    /// A phase of margins, deg, with so many digits or all; [`UNBOUNDED`] for 180.
+    pub fn phase(deg: f64, digits: Option<usize>) -> String {
+        bounded(deg, deg < 180.0, digits)
+    }
+
+    /// The gain at which the loop diverges likewise.
+    pub fn gain(&self, digits: Option<usize>) -> String {
+        bounded(self.common_gain, self.common_gain > 0.0, digits)
+    }
+
     /// Harmonic, condition, phase and gain of divergence, phases of overshoot, for people.
     pub fn cells(&self) -> [String; 6] {
-        let flaps: Vec<String> =
-            self.flap_overshoot_deg.iter().map(|deg| format!("{deg:.0}")).collect();
+        let phase = |deg: &f64| Self::phase(*deg, Some(0));
+        let flaps: Vec<String> = self.flap_overshoot_deg.iter().map(phase).collect();
         [
             format!("{}/rev", self.harmonic),
             format!("{:.1}", self.condition),
-            format!("{:.0}", self.common_phase_deg),
-            format!("{:.1}", self.common_gain),
-            format!("{:.0}", self.common_overshoot_deg),
+            phase(&self.common_phase_deg),
+            self.gain(Some(1)),
+            phase(&self.common_overshoot_deg),
             flaps.join(", "),
         ]
     }

@@ -4,14 +4,14 @@ use crate::SimError;
 use crate::case::LoadedCase;
 use crate::files::write_atomic;
 use crate::progress::Progress;
-use crate::report::{
-    StudyReport, histories_csv, measured_csv, report_html, robustness_csv, sensitivity_csv,
-};
+use crate::report::{StudyReport, histories_csv, measured_csv, report_html, sensitivity_csv};
 use crate::results::{Figures, RESULT_FILE, RunResult, StoredResult};
 use crate::run::{RunOutcome, steps_of, stored_of};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::Path;
-use study_text::{airloads_csv, blade_loads_csv, costs_csv, fronts_csv, tip_csv, vortices_csv};
+use study_text::{
+    airloads_csv, blade_loads_csv, costs_csv, fronts_csv, robustness_csv, tip_csv, vortices_csv,
+};
 use trim::WakeTrim;
 
 /// What is computed beside the case.
@@ -101,11 +101,12 @@ pub(super) fn write_shown(report: &StudyReport<'_>, out: &Path) -> Result<(), Si
     let (result, case) = (&stored.result, &stored.case);
     let finding = report.finding();
     let swept = |table: &[_]| sensitivity_csv(&case.control.harmonics, table);
+    let flown = |cells: &[_]| robustness_csv(cells, &result.margins);
     let has_front = figures.fronts.iter().any(|line| !line.points.is_empty());
     let files = [
         ("histories.csv", Some(histories_csv(&result.control))),
         ("sensitivity.csv", filled(&figures.sensitivity).map(swept)),
-        ("robustness.csv", filled(&result.robustness).map(robustness_csv)),
+        ("robustness.csv", filled(&result.robustness).map(flown)),
         ("costs.csv", filled(&figures.costs).map(costs_csv)),
         ("fronts.csv", has_front.then(|| fronts_csv(&figures.fronts))),
         ("measured.csv", result.measured.is_some().then(|| measured_csv(figures))),

@@ -18,10 +18,11 @@ pub use page::report_html;
 pub(crate) use paper::{is_paper, paper_numbers};
 pub use report_page::Section;
 pub(crate) use state::{residuals_text, state_lines, vibration_text, wake_note};
-pub use tables::{histories_csv, robustness_csv, sensitivity_csv};
+pub use tables::{histories_csv, sensitivity_csv};
 
-use crate::results::{Figures, StoredResult};
+use crate::results::{Figures, RunResult, StoredResult};
 use bench_study::identification::fit_table;
+use study_text::robustness_sections;
 
 /// A stored result with its figures, as it is shown.
 #[derive(Debug, Clone, Copy)]
@@ -53,7 +54,8 @@ impl<'a> StudyReport<'a> {
         let Self { stored, figures } = *self;
         let sensitivity = (!figures.sensitivity.is_empty())
             .then(|| tables::sensitivity(&stored.case.control.harmonics, &figures.sensitivity));
-        sensitivity.into_iter().chain(tables::robustness(&stored.result))
+        let RunResult { robustness, margins, .. } = &stored.result;
+        sensitivity.into_iter().chain(robustness_sections(robustness, margins))
     }
 
     /// The bench fits, the comparison with the paper and the further tables, for the terminal.

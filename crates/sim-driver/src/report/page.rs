@@ -10,7 +10,7 @@ use maud::{Markup, PreEscaped, html};
 use preisach_dyn::identify::RecordUse;
 use report_page::{Charts, Section, page};
 use rotor_study::DiskLoads;
-use study_text::{cost_sections, front_sections};
+use study_text::{cost_sections, front_sections, robustness_pictures};
 
 /// The report as one HTML text: charts, style and script inside, nothing loaded from anywhere.
 pub fn report_html(report: &StudyReport<'_>) -> String {
@@ -108,6 +108,7 @@ pub fn report_html(report: &StudyReport<'_>) -> String {
         }
         @if !bench.fits.is_empty() { (fits(&bench.fits)) }
         @for section in report.further() { (section) }
+        @for part in robustness_pictures(&stored.result.robustness, &stored.result.margins) { (part) }
         (assumptions::assumptions(&stored.case))
         footer { p { (stored.program) ", result " code { (stored.key) } } }
     };

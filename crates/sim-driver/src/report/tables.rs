@@ -1,9 +1,9 @@
 //! The tables of a report, and the histories as CSV.
 
-use crate::results::{ControlRecord, RunResult, flap_name, set_name};
+use crate::results::{ControlRecord, flap_name, set_name};
 use report_page::Section;
 use rotor_base::uniform_azimuths_rad;
-use rotor_study::{RobustnessCell, SensitivityLine, most_moved};
+use rotor_study::{SensitivityLine, most_moved};
 use std::fmt::Write as _;
 
 /// Azimuths of the histories.
@@ -62,63 +62,6 @@ pub fn sensitivity_csv(harmonics: &[Vec<usize>], rows: &[SensitivityLine]) -> St
         text += &(cells.join(",") + "\n");
     }
     text
-}
-
-/// Controllers of the robustness maps, in the order of their cells.
-const CONTROLLERS: [&str; 3] = ["fixed T", "adaptive", "adaptive, told"];
-
-/// How wrong T may be, and `J / J0` under every disturbance, a column for each controller; none without flights.
-pub(super) fn robustness(result: &RunResult) -> Vec<Section> {
-    // cells of an older version hold no flights
-    let cells: Vec<_> = result.robustness.iter().filter(|cell| cell.cycles > 0).collect();
-    if cells.is_empty() {
-        return Vec::new();
-    }
-    let rows = cells.chunks(CONTROLLERS.len()).map(|each| {
-        let (harmonic, d) = (each[0].harmonic, each[0].disturbance);
-        let flap = d.t_flap.map_or_else(String::new, |flap| format!(", {}", flap_name(flap)));
-        let mut row = vec![
-            format!("{harmonic}/rev"),
-            d.noise_percent.to_string(),
-            format!("{} / {} deg{flap}", d.t_gain, d.t_phase_deg),
-            d.drift_percent.to_string(),
-        ];
-        row.extend(each.iter().map(|cell| cell.summary()));
-        row
-    });
-    let head = ["per rev", "noise %", "T error", "drift %"].into_iter().chain(CONTROLLERS);
-    let flights = Section {
-        title: "Flights under noise, a wrong T and drift".to_owned(),
-        text: format!(
-            "J/J0 over the last cycles of {} (of {} draws with noise: mean, best and worst; seeds alike for all controllers), then its largest on the way, loads without noise. Fixed number of cycles, no line search, half a step a cycle. Noise of a load over the baseline, T wrong by gain and phase, loss of actuator gain per cycle. The rotor is linearised about its trim, the actuators are as identified.",
-            cells[0].cycles,
-            cells.iter().map(|cell| cell.draws).max().unwrap_or_default()
-        ),
-        header: head.map(str::to_owned).collect(),
-        rows: rows.collect(),
-    };
-    let header = [
-        "per rev",
-        "condition",
-        "diverges at, deg",
-        "diverges at gain",
-        "J above J0 at, deg",
-        "one flap alone, deg",
-    ];
-    let margins = Section {
-        title: "How wrong T may be".to_owned(),
-        text: "Least phase error of T common to all flaps, and gain of the rotor over it, at which a loop without limits diverges (radius of (C.14) with half a step a cycle); then the least phase error from which J rises above J0 on the way, of all flaps and of one alone, root to tip.".to_owned(),
-        header: header.map(str::to_owned).to_vec(),
-        rows: result.margins.iter().map(|line| line.cells().to_vec()).collect(),
-    };
-    vec![margins, flights]
-}
-
-/// The cells of the robustness maps as CSV text.
-pub fn robustness_csv(cells: &[RobustnessCell]) -> String {
-    let header = RobustnessCell::default().fields().map(|(name, _)| name).join(",");
-    let rows = cells.iter().map(|cell| cell.fields().map(|(_, value)| value).join(",") + "\n");
-    header + "\n" + &rows.collect::<String>()
 }
 
 /// Flap and voltage histories of every study as CSV text.

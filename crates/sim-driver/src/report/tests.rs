@@ -10,7 +10,7 @@ use crate::results::{
 use bench_study::identification::identify_bench;
 use preisach_dyn::identify::Settings;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::{HubLoads, Sensitivity, SensitivityRecord};
+use rotor_study::{HubLoads, MarginLine, RobustnessCell, Sensitivity, SensitivityRecord};
 
 /// A result with every part, the loops from the shipped bench.
 fn example() -> StoredResult {
@@ -55,6 +55,11 @@ fn example() -> StoredResult {
             record: Some(record),
             ..Sensitivity::default()
         }],
+        robustness: vec![
+            RobustnessCell { harmonic: 3, cycles: 40, ..RobustnessCell::default() };
+            3
+        ],
+        margins: vec![MarginLine { harmonic: 3, common_phase_deg: 75.5, ..MarginLine::default() }],
         warnings: vec!["4/rev = 25.5 Hz is outside the tested range".to_owned()],
         ..RunResult::default()
     };
@@ -90,6 +95,8 @@ fn the_page_is_complete_and_loads_nothing() {
         "uniform inflow",
         "Synthetic",
         "held out",
+        "How wrong T may be, per harmonic",
+        "3/rev under disturbance",
     ] {
         assert!(page.contains(text), "{text}");
     }
