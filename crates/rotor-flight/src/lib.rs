@@ -23,29 +23,32 @@ mod flight;
 mod flown;
 mod flying_case;
 mod handed;
+mod limit;
 mod margins;
 mod path;
 mod pilot;
-mod sections;
+mod shown;
 mod state_space;
-mod tables;
 mod wake_in_time;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController};
 pub use error::FlightError;
-pub use exported::{controllers_of_case, dissimilar_note, exported_case};
 pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
 pub use flying_case::{DrawnCase, DrawnController, FlyingCase};
+pub use exported::{controllers_of_case, dissimilar_note, exported_case};
 pub use handed::handed_t;
 pub use margins::{MarginPoint, MarginSet, MarginStudy};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
-pub use sections::{draws_section, failures_section, harmonic_names, margins_section};
+pub use shown::{
+    BESIDE_FILES, draws_csv, draws_pictures, draws_section, failures_csv, failures_section,
+    flight_csv, harmonic_names, is_own_table, load_amplitudes, margins_csv, margins_pictures,
+    margins_section,
+};
 pub use state_space::state_space_of_case;
-pub use tables::{draws_csv, failures_csv, flight_csv, load_amplitudes, margins_csv};
 pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
 pub use wake_in_time::{
     Agreement, FoundInTime, InTimeQuestion, MeanLine, Verdict, WakeInTimeResult, wake_in_time,

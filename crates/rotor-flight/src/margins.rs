@@ -1,7 +1,7 @@
 //! How wrong T may be along the speeds of a flight: phase, gain, one load, and the speed itself.
 
 use crate::flying_case::FlyingCase;
-use crate::{FlightError, FlightState};
+use crate::{FlightError, FlightState, limit};
 use hhc_control::{FeedbackLaw, RelaxedStep, TMatrix};
 use rayon::prelude::*;
 use rotor_study::HubLoads;
@@ -32,23 +32,32 @@ pub struct MarginSet {
 }
 
 /// How wrong the T of one advance ratio may be. Each error is alone.
+///
+/// Serialised, a limit that does not exist is the word `unbounded` in the place of its number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MarginPoint {
     /// Where T is right.
     pub advance_ratio: f64,
-    /// Largest singular value of the weighted T over the smallest.
+    /// Largest singular value of the weighted T over the smallest; infinity for a T that cannot move a combination of loads.
+    #[serde(serialize_with = "limit::gain")]
     pub condition: f64,
     /// Phase error of all flaps at which the loop diverges, deg; 180 for none.
+    #[serde(serialize_with = "limit::phase")]
     pub common_phase_deg: f64,
     /// Gain of the rotor over that of T at which it does; infinity for none.
+    #[serde(serialize_with = "limit::gain")]
     pub common_gain: f64,
     /// Phase error of all flaps from which `J` rises above `J0` on the way, deg; 180 for none.
+    #[serde(serialize_with = "limit::phase")]
     pub common_overshoot_deg: f64,
     /// The same of one flap alone, flap by flap: the largest difference between flaps.
+    #[serde(serialize_with = "limit::phases")]
     pub flap_overshoot_deg: Vec<f64>,
     /// Phase error of one load alone at which the loop diverges, deg, load by load; 180 for none.
+    #[serde(serialize_with = "limit::phases")]
     pub load_phase_deg: Vec<f64>,
     /// Gain of one load over that in T at which it does, load by load; infinity for none.
+    #[serde(serialize_with = "limit::gains")]
     pub load_gain: Vec<f64>,
     /// Spectral radius of the loop with this T at every advance ratio, in steps of the loop's gain; 1 and more diverges.
     pub radius: Vec<f64>,
@@ -56,6 +65,7 @@ pub struct MarginPoint {
     pub whole_step_radius: Vec<f64>,
     /// Lowest and highest advance ratio between which whole steps with this T converge; none at an end that the speeds of the
     /// flight do not reach.
+    #[serde(serialize_with = "limit::reach")]
     pub holds_within: [Option<f64>; 2],
 }
 

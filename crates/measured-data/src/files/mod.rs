@@ -12,5 +12,5 @@ pub use ron_index::RonIndex;
 pub use ron_read::{RonFile, read_ron, ron_text};
 pub use write::{
     default_model_file, refuse_input, refuse_inside, refuse_other_kind, refuse_other_text,
-    refuse_unwritable, write_atomic, write_folder, write_new,
+    refuse_unwritable, remove_own, write_atomic, write_folder, write_new,
 };

@@ -161,6 +161,19 @@ pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
     })
 }
 
+/// Removes a regular file whose text is known as written by this program; whether it was there. Anything else stays: other
+/// text, what is no text, links, what is not there.
+///
+/// # Errors
+/// [`DataError::NotWritten`] of a file that is known and cannot be removed.
+pub fn remove_own(path: &Path, is_own: impl Fn(&str) -> bool) -> Result<bool, DataError> {
+    let is_regular = path.symlink_metadata().is_ok_and(|found| found.is_file());
+    if !is_regular || !Source::read(path).is_ok_and(|source| is_own(&source.text)) {
+        return Ok(false);
+    }
+    std::fs::remove_file(path).map(|()| true).map_err(|e| not_written(path, &e))
+}
+
 /// Refuses to replace a file of a data folder with a result.
 ///
 /// # Errors
@@ -358,6 +371,30 @@ mod tests {
         assert!(matches!(error, DataError::NotWritten { .. }));
         let left: Vec<_> = std::fs::read_dir(place.path()).unwrap().collect();
         assert_eq!(left.len(), 1, "{left:?}");
+    }
+
+    #[test]
+    fn only_what_is_known_is_removed() {
+        let place = tempfile::tempdir().unwrap();
+        let is_own = |text: &str| text.starts_with("own,");
+        let left = |name: &str, bytes: &[u8]| {
+            let path = place.path().join(name);
+            write_atomic(&path, bytes).unwrap();
+            let is_removed = remove_own(&path, is_own).unwrap();
+            assert_eq!(is_removed, !path.exists());
+            path.exists()
+        };
+        assert!(!left("own.csv", b"own,table\n1,2\n"));
+        assert!(left("other.csv", b"my,table\n1,2\n") && left("bytes", &[0xff, 0x00]));
+        assert!(!remove_own(&place.path().join("none.csv"), is_own).unwrap());
+        assert!(!remove_own(place.path(), is_own).unwrap());
+        #[cfg(unix)]
+        {
+            let (to, link) = (place.path().join("to.csv"), place.path().join("link.csv"));
+            write_atomic(&to, b"own,table\n").unwrap();
+            std::os::unix::fs::symlink(&to, &link).unwrap();
+            assert!(!remove_own(&link, is_own).unwrap() && to.is_file());
+        }
     }
 
     #[test]

@@ -4,11 +4,11 @@ use super::args::FlyArgs;
 use super::{check_range, folder_or, overridden, warn, write_texts};
 use crate::SimError;
 use crate::case::load_case;
-use crate::files::refuse_unwritable;
+use crate::files::{refuse_unwritable, remove_own};
 use crate::flight::{Beside, flight_csv, flight_html, flown};
 use crate::output::{Format, Printable, print};
 use crate::problem::Problems;
-use rotor_flight::{draws_csv, failures_csv, margins_csv};
+use rotor_flight::{BESIDE_FILES, draws_csv, failures_csv, is_own_table, margins_csv};
 
 pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);
@@ -25,7 +25,13 @@ pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let failures = found.failures.as_ref().map(|study| ("failures.csv", failures_csv(study)));
     let margins = found.margins.as_ref().map(|study| ("margins.csv", margins_csv(study)));
     let draws = found.drawn.as_ref().map(|drawn| ("draws.csv", draws_csv(drawn)));
-    write_texts(&out, files.into_iter().chain(failures).chain(margins).chain(draws))?;
+    let beside: Vec<(&str, String)> = failures.into_iter().chain(margins).chain(draws).collect();
+    // tables of an earlier flight are not of this one
+    for (name, _) in BESIDE_FILES.iter().filter(|(name, _)| beside.iter().all(|own| own.0 != *name))
+    {
+        remove_own(&out.join(name), |text| is_own_table(name, text))?;
+    }
+    write_texts(&out, files.into_iter().chain(beside))?;
     warn(&found.warnings, args.format);
     print(&found.render(args.format)?)?;
     if args.format != Format::Json {

@@ -3,11 +3,11 @@
 use super::FlightResult;
 use crate::results::flap_name;
 use maud::{Markup, html};
-use report_page::pictures::{HeatMap, Look, Panel, PointForm, Series, legend};
+use report_page::pictures::{Look, Panel, PointForm, Series, legend};
 use report_page::{Charts, page};
 use rotor_flight::{
-    DrawnCase, DrawnController, FlightPoint, FlownController, MarginSet, MarginStudy,
-    draws_section, failures_section, harmonic_names, load_amplitudes, margins_section,
+    FlightPoint, FlownController, draws_pictures, draws_section, failures_section, load_amplitudes,
+    margins_pictures, margins_section,
 };
 use rotor_study::HubLoads;
 
@@ -115,53 +115,6 @@ impl FlightResult {
     }
 }
 
-/// The table, and a picture of every controller.
-fn draws(drawn: &DrawnCase) -> Markup {
-    let lines = |own: &DrawnController| -> Vec<Series> {
-        let names = ["5 % of the draws", "median", "95 %"];
-        let of = |(k, name): (usize, &str)| Series {
-            look: Look { name: name.to_owned(), colour: k, form: PointForm::Line },
-            points: own.cycles.iter().map(|(time_s, shares)| [*time_s, shares[k]]).collect(),
-            told: vec![],
-        };
-        names.into_iter().enumerate().map(of).collect()
-    };
-    html! {
-        (draws_section(drawn))
-        @if let Some(first) = drawn.controllers.first() { (looks(&lines(first))) }
-        div.grid {
-            @for own in &drawn.controllers {
-                (panel(&format!("{} T: J over J without control", own.controller), "J/J0", lines(own)))
-            }
-        }
-    }
-}
-
-/// The table, and a map of every set.
-fn margins(study: &MarginStudy) -> Markup {
-    let places: Vec<String> = study.advance_ratios.iter().map(|mu| format!("{mu:.3}")).collect();
-    let map = |set: &MarginSet| {
-        let beyond = |radius: &f64| Some(radius - 1.0);
-        HeatMap {
-            title: format!("{} per rev: T of a row flown at a column", harmonic_names(set)),
-            note: "Spectral radius of whole steps less 1: above zero the loop diverges.".to_owned(),
-            rows: places.clone(),
-            columns: places.clone(),
-            values: set
-                .points
-                .iter()
-                .map(|point| point.whole_step_radius.iter().map(beyond).collect())
-                .collect(),
-            limit: 1.0,
-            ..HeatMap::default()
-        }
-    };
-    html! {
-        (margins_section(study))
-        div.grid { @for set in &study.sets { (map(set).markup()) } }
-    }
-}
-
 /// The flight on one page.
 pub fn flight_html(of: &FlightResult) -> String {
     let first = of.flown.flights.first().map(|own| own.points.as_slice()).unwrap_or_default();
@@ -198,8 +151,14 @@ pub fn flight_html(of: &FlightResult) -> String {
             p { "What is not commanded comes of the hysteresis: the harmonics mix." }
             (of.motions())
         }
-        @if let Some(drawn) = &of.drawn { (draws(drawn)) }
-        @if let Some(study) = &of.margins { (margins(study)) }
+        @if let Some(drawn) = &of.drawn {
+            (draws_section(drawn))
+            @for part in draws_pictures(drawn) { (part) }
+        }
+        @if let Some(study) = &of.margins {
+            (margins_section(study))
+            @for part in margins_pictures(study) { (part) }
+        }
         @if let Some(study) = &of.failures { (failures_section(study)) }
     };
     page(&of.title, &body, &Charts::default())

@@ -87,7 +87,20 @@ fn margins_and_draws_are_tabled_and_drawn() {
     assert_eq!(rows(&place.read("out/case/draws.csv")).len(), 7);
     let page = place.read("out/case/flight.html");
     assert!(page.contains("T of a row flown at a column") && page.contains("95 %"));
+    assert!(page.contains("2, 3 per rev: phase error of T"), "the figure of the margins");
     place.hhc(&["fly", "case.ron", "--draws", "0"]).rejected(&["--draws", "1"]);
+    // a limit that there is not is a word, not a number that JSON cannot hold
+    let told = place.hhc(&["fly", "case.ron", "--margins", "--format", "json"]).json();
+    let margins = told["margins"].to_string();
+    assert!(margins.contains("\"unbounded\"") && !margins.contains("null"), "{margins}");
+    assert!(csv.contains(",unbounded,") && !csv.contains("none"), "{csv}");
+    // the rerun asked for no draws: theirs is gone, what is somebody else's stays
+    let has = |name: &str| place.listing().iter().any(|own| own == name);
+    assert!(has("out/case/margins.csv") && !has("out/case/draws.csv"));
+    place.write("out/case/draws.csv", "my,own\n1,2\n");
+    place.hhc(&["fly", "case.ron"]).done();
+    assert!(!has("out/case/margins.csv"));
+    assert_eq!(place.read("out/case/draws.csv"), "my,own\n1,2\n");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Failures, margins and draws of a flight as tables for people.
 
+use crate::limit::Limit;
 use crate::{
     DrawnCase, DrawnController, FailureLine, FailureStudy, MarginPoint, MarginSet, MarginStudy,
 };
@@ -63,25 +64,28 @@ fn least(values: impl IntoIterator<Item = f64>) -> Option<(usize, f64)> {
 pub fn margins_section(study: &MarginStudy) -> Section {
     let row = |set: &MarginSet| {
         let worst = |of: fn(&MarginPoint) -> f64| {
-            least(set.points.iter().map(of)).map_or(f64::NAN, |(_, value)| value)
+            least(set.points.iter().map(of)).map_or(f64::INFINITY, |(_, value)| value)
         };
+        let largest = set.points.iter().map(|point| point.condition).fold(0.0, f64::max);
         let of_one = |values: fn(&MarginPoint) -> &[f64], name: &dyn Fn(usize) -> String| {
             let each = set.points.iter().filter_map(|point| least(values(point).iter().copied()));
             let worst = each.min_by(|a, b| a.1.total_cmp(&b.1));
-            worst.map_or_else(String::new, |(at, deg)| format!("{deg:.0} ({})", name(at)))
+            match worst.map(|(at, deg)| (at, Limit::of_phase(deg))) {
+                Some((at, limit @ Limit::At(_))) => format!("{} ({})", limit.rounded(0), name(at)),
+                _ => Limit::Unbounded.rounded(0),
+            }
         };
         let flap = of_one(|p| &p.flap_overshoot_deg, &|flap| format!("flap {}", flap + 1));
         let load = of_one(|p| &p.load_phase_deg, &|load| HubLoads::NAMES[load].to_uppercase());
         let reach = |point: Option<&MarginPoint>, end: usize| {
-            let held = point.and_then(|point| point.holds_within[end]);
-            held.map_or_else(|| "all".to_owned(), |mu| format!("{mu:.3}"))
+            Limit::of_reach(point.and_then(|point| point.holds_within[end])).rounded(3)
         };
         vec![
             harmonic_names(set),
-            format!("{:.1}", -worst(|p| -p.condition)),
-            format!("{:.0}", worst(|p| p.common_phase_deg)),
-            format!("{:.1}", worst(|p| p.common_gain)),
-            format!("{:.0}", worst(|p| p.common_overshoot_deg)),
+            Limit::of_gain(largest).rounded(1),
+            Limit::of_phase(worst(|p| p.common_phase_deg)).rounded(0),
+            Limit::of_gain(worst(|p| p.common_gain)).rounded(1),
+            Limit::of_phase(worst(|p| p.common_overshoot_deg)).rounded(0),
             flap,
             load,
             reach(set.points.first(), 1),
@@ -102,7 +106,7 @@ pub fn margins_section(study: &MarginStudy) -> Section {
     Section {
         title: "How wrong T may be".to_owned(),
         text: format!(
-            "The worst over the speeds, each error alone, angles in deg. Phase, gain and one load: where the loop with steps of {} diverges. J > J0, one flap: where J rises above J0 on the way. Slowest (fastest) T to: the advance ratio at which whole steps with the T of the lowest (highest) one diverge; all: nowhere within the flight.",
+            "The worst over the speeds, each error alone, angles in deg. Phase, gain and one load: where the loop with steps of {} diverges. J > J0, one flap: where J rises above J0 on the way. Slowest (fastest) T to: the advance ratio at which whole steps with the T of the lowest (highest) one diverge. Unbounded: no phase up to 180 deg, no gain up to 1000, no speed of the flight.",
             study.gain
         ),
         header: header.map(str::to_owned).into(),

@@ -1,5 +1,6 @@
 //! Flights and failures as CSV text.
 
+use crate::limit::Limit;
 use crate::{
     DrawnCase, FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController, MarginStudy,
 };
@@ -112,7 +113,8 @@ pub fn draws_csv(drawn: &DrawnCase) -> String {
     text
 }
 
-/// Margins as CSV text, a row for each set of harmonics and advance ratio of its T. `none` stands where nothing diverges.
+/// Margins as CSV text, a row for each set of harmonics and advance ratio of its T. `unbounded` stands where no limit was found:
+/// no phase up to 180 deg, no gain up to 1000, no speed of the flight.
 pub fn margins_csv(study: &MarginStudy) -> String {
     let Some(first) = study.sets.first().and_then(|set| set.points.first()) else {
         return String::new();
@@ -137,29 +139,106 @@ pub fn margins_csv(study: &MarginStudy) -> String {
     let names: Vec<String> =
         names.chain(flaps).chain(loads).chain(gains).chain(radii).chain(whole).collect();
     let mut text = names.join(",") + "\n";
-    let number = |value: f64| if value.is_finite() { value.to_string() } else { "none".to_owned() };
     for set in &study.sets {
         let harmonics = set.harmonics.iter().map(usize::to_string).collect::<Vec<_>>().join(" ");
         for point in &set.points {
-            let of_all = [
-                point.advance_ratio,
-                point.condition,
-                point.common_phase_deg,
-                point.common_gain,
-                point.common_overshoot_deg,
+            let limits = [
+                Limit::At(point.advance_ratio),
+                Limit::of_gain(point.condition),
+                Limit::of_phase(point.common_phase_deg),
+                Limit::of_gain(point.common_gain),
+                Limit::of_phase(point.common_overshoot_deg),
             ];
-            let within = point.holds_within.iter().map(|mu| mu.unwrap_or(f64::INFINITY));
-            let each = of_all
+            let phases = point.flap_overshoot_deg.iter().chain(&point.load_phase_deg);
+            let radii = point.radius.iter().chain(&point.whole_step_radius);
+            let each = limits
                 .into_iter()
-                .chain(within)
-                .chain(point.flap_overshoot_deg.iter().copied())
-                .chain(point.load_phase_deg.iter().copied())
-                .chain(point.load_gain.iter().copied())
-                .chain(point.radius.iter().copied())
-                .chain(point.whole_step_radius.iter().copied());
-            let values: Vec<String> = each.map(number).collect();
+                .chain(point.holds_within.map(Limit::of_reach))
+                .chain(phases.map(|deg| Limit::of_phase(*deg)))
+                .chain(point.load_gain.iter().map(|gain| Limit::of_gain(*gain)))
+                .chain(radii.map(|radius| Limit::At(*radius)));
+            let values: Vec<String> = each.map(Limit::exact).collect();
             let _ = writeln!(text, "{harmonics},{}", values.join(","));
         }
     }
     text
+}
+
+/// Tables that are written when they are asked for, each with the beginning of its first line.
+pub const BESIDE_FILES: [(&str, &str); 3] = [
+    ("failures.csv", "failure,control,j_over_j0,worst_j_over_j0,"),
+    ("margins.csv", "per_rev,t_of_advance_ratio,condition,"),
+    ("draws.csv", "controller,time_s,j_over_j0_5_percent,"),
+];
+
+/// Whether a text is the table that a flight writes under a name of [`BESIDE_FILES`], and not a file of somebody else.
+pub fn is_own_table(name: &str, text: &str) -> bool {
+    BESIDE_FILES.iter().any(|(own, head)| *own == name && text.starts_with(head))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{MarginPoint, MarginSet, margins_section};
+
+    /// A T without a limit in some places.
+    fn study() -> MarginStudy {
+        let point = MarginPoint {
+            advance_ratio: 0.2,
+            condition: f64::INFINITY,
+            common_phase_deg: 75.5,
+            common_gain: f64::INFINITY,
+            common_overshoot_deg: 180.0,
+            flap_overshoot_deg: vec![46.0, 180.0],
+            load_phase_deg: vec![180.0, 180.0, 77.0, 180.0, 180.0, 180.0],
+            load_gain: vec![f64::INFINITY; 6],
+            radius: vec![0.5],
+            whole_step_radius: vec![0.0],
+            holds_within: [None, Some(0.225)],
+        };
+        let sets = vec![MarginSet { harmonics: vec![2], points: vec![point] }];
+        MarginStudy { gain: 0.5, advance_ratios: vec![0.2], sets }
+    }
+
+    /// What has no limit is the same word everywhere: no null, no infinity, no number that is none.
+    #[test]
+    fn no_limit_is_one_word_in_every_form() {
+        let study = study();
+        let json = serde_json::to_value(&study).unwrap();
+        let point = &json["sets"][0]["points"][0];
+        for unbounded in [
+            &point["condition"],
+            &point["common_gain"],
+            &point["common_overshoot_deg"],
+            &point["flap_overshoot_deg"][1],
+            &point["load_gain"][5],
+            &point["holds_within"][0],
+        ] {
+            assert_eq!(unbounded, "unbounded", "{point}");
+        }
+        assert_eq!(point["common_phase_deg"], 75.5);
+        assert_eq!(point["holds_within"][1], 0.225);
+        let (csv, told) = (margins_csv(&study), margins_section(&study).to_string());
+        let row = csv.lines().nth(1).unwrap();
+        let expected = "2,0.2,unbounded,75.5,unbounded,unbounded,unbounded,0.225,46,unbounded,";
+        assert!(row.starts_with(expected), "{row}");
+        assert_eq!(csv.lines().next().unwrap().split(',').count(), row.split(',').count());
+        for text in [json.to_string(), csv, told] {
+            for wrong in ["null", "inf", "NaN", "none"] {
+                assert!(!text.contains(wrong), "{wrong}: {text}");
+            }
+        }
+    }
+
+    /// The heads by which old tables are known are those that are written.
+    #[test]
+    fn a_table_knows_its_own() {
+        let none = FailureStudy { flap: 1, load: String::new(), lines: vec![] };
+        let drawn = DrawnCase { first_seed: 1, draws: 1, controllers: vec![] };
+        let written = [failures_csv(&none), margins_csv(&study()), draws_csv(&drawn)];
+        for ((name, _), text) in BESIDE_FILES.iter().zip(&written) {
+            assert!(is_own_table(name, text), "{name}: {text}");
+            assert!(!is_own_table(name, "controller,time\n") && !is_own_table("flight.csv", text));
+        }
+    }
 }
