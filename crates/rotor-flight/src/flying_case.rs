@@ -127,10 +127,12 @@ impl<'a> FlyingCase<'a> {
                 .into_par_iter()
                 .map(|draw| {
                     let flight = Flight { seed: first_seed + draw, ..flight.clone() };
-                    self.flown(&flight, controller).inspect(|_| done())
+                    let points = self.flown(&flight, controller)?;
+                    done();
+                    Ok(Draw::of(&points, disturbed_s))
                 })
-                .collect::<Result<Vec<_>, FlightError>>()?;
-            Ok(DrawnController::of(controller.name(), &flights, disturbed_s))
+                .collect::<Result<Vec<Draw>, FlightError>>()?;
+            Ok(DrawnController::of(controller.name(), &flights))
         };
         let controllers = self.values.controllers.iter().map(of_controller);
         let controllers = controllers.collect::<Result<_, FlightError>>()?;
@@ -138,22 +140,39 @@ impl<'a> FlyingCase<'a> {
     }
 }
 
+/// What is kept of one flight of many: no more than the spread needs.
+struct Draw {
+    summary: FlightSummary,
+    /// End of every cycle, s, and its `J / J0`.
+    cycles: Vec<(f64, f64)>,
+}
+
+impl Draw {
+    /// Of the points of a flight, one at least.
+    fn of(points: &[FlightPoint], disturbed_s: f64) -> Self {
+        Self {
+            summary: FlightSummary::of(points, disturbed_s),
+            cycles: points.iter().map(|point| (point.time_s, point.cost_ratio)).collect(),
+        }
+    }
+}
+
 impl DrawnController {
-    /// Of the points of all flights, one at least, which have the same cycles.
-    fn of(controller: &'static str, flights: &[Vec<FlightPoint>], disturbed_s: f64) -> Self {
-        let each: Vec<FlightSummary> =
-            flights.iter().map(|points| FlightSummary::of(points, disturbed_s)).collect();
-        let of = |part: fn(&FlightSummary) -> f64| spread(each.iter().map(part).collect());
-        let first = flights.first().map(Vec::as_slice).unwrap_or_default();
-        let cycle = |(k, point): (usize, &FlightPoint)| {
-            (point.time_s, spread(flights.iter().map(|points| points[k].cost_ratio).collect()))
+    /// Of flights, one at least, which have the same cycles.
+    fn of(controller: &'static str, draws: &[Draw]) -> Self {
+        let of = |part: fn(&FlightSummary) -> f64| {
+            spread(draws.iter().map(|draw| part(&draw.summary)).collect())
+        };
+        let first = draws.first().map(|draw| draw.cycles.as_slice()).unwrap_or_default();
+        let cycle = |(k, &(time_s, _)): (usize, &(f64, f64))| {
+            (time_s, spread(draws.iter().map(|draw| draw.cycles[k].1).collect()))
         };
         Self {
             controller,
             mean_cost_ratio: of(|s| s.mean_cost_ratio),
             worst_cost_ratio: of(|s| s.worst_cost_ratio),
             end_cost_ratio: of(|s| s.end_cost_ratio),
-            above_j0: each.iter().filter(|s| s.worst_cost_ratio > 1.0).count(),
+            above_j0: draws.iter().filter(|draw| draw.summary.worst_cost_ratio > 1.0).count(),
             cycles: first.iter().enumerate().map(cycle).collect(),
         }
     }
