@@ -16,19 +16,17 @@
 
 mod case_flight;
 mod error;
-mod exported;
 mod failures;
 mod flaps;
 mod flight;
 mod flown;
 mod flying_case;
-mod handed;
+mod leaving;
 mod limit;
 mod margins;
 mod path;
 mod pilot;
 mod shown;
-mod state_space;
 mod wake_in_time;
 
 pub use case_flight::{FlightSummary, FlownCase, FlownController};
@@ -38,8 +36,9 @@ pub use flaps::{FlapMarch, FlapTurn};
 pub use flight::{FlapFailure, Flight};
 pub use flown::{FlightPoint, fly};
 pub use flying_case::{DrawnCase, DrawnController, FlyingCase};
-pub use exported::{controllers_of_case, dissimilar_note, exported_case};
-pub use handed::handed_t;
+pub use leaving::{
+    controllers_of_case, dissimilar_note, exported_case, handed_t, state_space_of_case,
+};
 pub use margins::{MarginPoint, MarginSet, MarginStudy};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
@@ -48,7 +47,6 @@ pub use shown::{
     flight_csv, harmonic_names, is_own_table, load_amplitudes, margins_csv, margins_pictures,
     margins_section,
 };
-pub use state_space::state_space_of_case;
 pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
 pub use wake_in_time::{
     Agreement, FoundInTime, InTimeQuestion, MeanLine, Verdict, WakeInTimeResult, wake_in_time,

@@ -7,7 +7,7 @@ use common::actuator;
 use preisach_dyn::ActuatorModel;
 use rotor_export::Document;
 use rotor_flight::{FlightError, FlownCase, FlyingCase, exported_case, handed_t};
-use rotor_study::case::{Case, FlightValues};
+use rotor_study::case::{Case, FlightValues, InflowChoice};
 use std::sync::Arc;
 
 fn case() -> Case {
@@ -64,6 +64,39 @@ fn the_exported_t_handed_back_flies_the_same_flight_to_the_last_bit() {
     assert!(otherwise.flights[0].points[2].control_volt != own.flights[0].points[2].control_volt);
     // what is exported stays the rotor's own
     assert_eq!(exported_case(&case, &model).unwrap(), document);
+}
+
+/// Weights, limits and conditions go with T; what the case has otherwise is said, each at its field, and nothing else.
+#[test]
+fn what_t_was_found_with_is_compared_with_the_case() {
+    let (case, model) = (case(), actuator());
+    let document = exported_case(&case, &model).unwrap();
+    let told = |case: &Case| handed_t(case, &document).unwrap().told;
+    assert_eq!(told(&case), Vec::<String>::new());
+    let mut other = case.clone();
+    other.control.load_weights.fz = 4.0;
+    other.actuator.range_volt.1 = 120.0;
+    other.rotor.omega_rpm = 300.0;
+    other.inflow.model = InflowChoice::PittPeters;
+    if let Some(flight) = &mut other.flight {
+        flight.rate_limit_volt = 3.0;
+    }
+    let said = told(&other);
+    assert_eq!(said.len(), 5, "{said:?}");
+    for (line, parts) in said.iter().zip([
+        ["`rotor_rpm` 383, the case has 300", "`rotor.omega_rpm`"],
+        ["`highest_V` 150, the case has 120", "`actuator.range_V`"],
+        ["`rate_limit_V` 10, the case has 3", "`flight.rate_limit_V`"],
+        ["`fz_4_per_rev_cos` 1, the case has 4", "`control.load_weights`"],
+        ["Inflow: Drees", "Inflow: PittPeters"],
+    ]) {
+        assert!(parts.iter().all(|part| line.contains(part)), "{line}: {parts:?}");
+    }
+    // T alone, such as one table of CSV: that nothing is known is said too
+    let mut alone = document.clone();
+    alone.arrays.retain(|array| array.name.starts_with("T_"));
+    let said = handed_t(&case, &alone).unwrap().told;
+    assert!(said.len() == 1 && said[0].contains("without `settings`"), "{said:?}");
 }
 
 /// Changes a document, and what is then said of it.

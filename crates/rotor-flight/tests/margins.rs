@@ -98,7 +98,8 @@ fn a_t_that_is_handed_in_meets_the_rotor_as_it_is() {
         advance_ratios: vec![0.15, 0.35],
         columns: vec![t_of(0.15), t_of(0.35)],
     };
-    case.control.handed_t = Some(Arc::new(HandedT { sets: vec![set] }));
+    let handed = HandedT { sets: vec![set], ..HandedT::default() };
+    case.control.handed_t = Some(Arc::new(handed));
     let values = FlightValues { harmonics: vec![3], ..values };
     let study = FlyingCase::new(&case, &values, &ideal()).unwrap().margins().unwrap();
     for (k, point) in study.sets[0].points.iter().enumerate() {

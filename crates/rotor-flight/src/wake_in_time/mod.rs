@@ -2,7 +2,7 @@
 
 pub(crate) mod text;
 
-use crate::exported::dissimilar_note;
+use crate::leaving::dissimilar_note;
 use rotor_study::case::{Case, CirculationChoice, DynamicStallChoice, InflowChoice, InflowValues};
 use rotor_study::{HubLoads, StudyError, TrimmedRotor, wake_warnings};
 use rotor_wake::{FlightState, WakeSymmetry, momentum_inflow};

@@ -7,6 +7,8 @@ use hhc_control::{ControlError, TMatrix};
 pub struct HandedT {
     /// One entry per set.
     pub sets: Vec<HandedSet>,
+    /// What it was found with otherwise than the case has it, in sentences.
+    pub told: Vec<String>,
 }
 
 /// T of one set of harmonics.
@@ -122,7 +124,7 @@ mod tests {
             advance_ratios: vec![0.15, 0.3],
             columns: vec![column(0.1 + 0.2), column(1.0)],
         };
-        let handed = HandedT { sets: vec![own] };
+        let handed = HandedT { sets: vec![own], ..HandedT::default() };
         let at = |mu: f64| handed.set(&[3]).unwrap().at(mu).unwrap();
         assert_eq!(at(0.15).columns(), column(0.1 + 0.2));
         assert_eq!(at(0.300_04).columns(), column(1.0));

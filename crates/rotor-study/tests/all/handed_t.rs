@@ -14,7 +14,7 @@ fn case() -> Case {
 
 fn handed(columns: Vec<Vec<f64>>) -> Arc<HandedT> {
     let set = HandedSet { harmonics: vec![3], advance_ratios: vec![0.3], columns: vec![columns] };
-    Arc::new(HandedT { sets: vec![set] })
+    Arc::new(HandedT { sets: vec![set], ..HandedT::default() })
 }
 
 /// The T that the loop identifies, handed back, gives the same control to the last bit; another one another control,

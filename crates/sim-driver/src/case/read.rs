@@ -35,7 +35,8 @@ pub struct LoadedCase {
     pub folder: Folder,
     /// What its measured files hold.
     pub measured: MeasuredRotor,
-    /// Fields under a name they no longer have, and measured files that are not inside the program.
+    /// Fields under a name they no longer have, measured files that are not inside the program, and what a T that is
+    /// handed in was found with otherwise than the case has it.
     pub warnings: Vec<String>,
 }
 
@@ -122,6 +123,8 @@ pub fn read_case(source: &Source, folder: &Folder) -> Result<LoadedCase, Problem
     match resolved(case, index, folder) {
         Ok(loaded) => {
             warnings.extend(loaded.measured.notes.iter().cloned());
+            let handed = loaded.case.control.handed_t.iter();
+            warnings.extend(handed.flat_map(|t| t.told.iter().cloned()));
             problems.into_result(Some(LoadedCase { warnings, ..loaded }))
         }
         Err(more) => {

@@ -43,6 +43,8 @@ fn refused(place: Place, message: &dyn Display) -> Problem {
 
 #[derive(Deserialize)]
 struct FileDocument {
+    #[serde(default)]
+    notes: Vec<String>,
     arrays: Vec<FileArray>,
 }
 
@@ -97,7 +99,7 @@ fn json(source: &Source) -> Result<Document, Problem> {
         Ok(LabelledArray { values, ..whole })
     };
     let arrays = read.arrays.into_iter().map(array).collect::<Result<_, Problem>>()?;
-    Ok(Document { arrays, ..Document::default() })
+    Ok(Document { notes: read.notes, arrays, ..Document::default() })
 }
 
 /// All triples of indices, the last running fastest.

@@ -203,6 +203,20 @@ fn t_handed_back_flies_the_same_flight() {
         let flown = place.read(&format!("{name}/flight.csv"));
         assert!(flown == place.read("own/flight.csv"), "{file}");
     }
+    // what T was found with otherwise than the case has it is said, and T is flown all the same
+    let handed = case.replace("    control: (", "    control: (t_file: \"j/rotor.json\", ");
+    let warned = |name: &str, text: &str| {
+        place.write(name, text);
+        place.hhc(&["fly", name, "--format", "json"]).json()["warnings"].to_string()
+    };
+    let same = warned("same.ron", &handed);
+    assert!(!same.contains("handed in was found"), "{same}");
+    let other = handed.replace("amplitude_limit_V: 40", "amplitude_limit_V: 30");
+    let other = other.replace("inflow: (model: Uniform)", "inflow: (model: Drees)");
+    let other = warned("other.ron", &other);
+    for part in ["`amplitude_limit_V` 40, the case has 30", "Inflow: Uniform", "Inflow: Drees"] {
+        assert!(other.contains(part), "{part}: {other}");
+    }
     // a set that the file does not hold, at the field of the case
     with("handed.ron", "c/rotor_T_2_3.csv");
     let missing = ["handed.ron", "control.t_file", "T of 2+3 per rev, not of 3 per rev"];

@@ -1,7 +1,8 @@
 //! T from arrays with names and units, as [`crate::exported_case`] gives them out.
 
+use super::labels::{AFTER_STEP, POINT_AT, T_OF, control_labels, load_axis, load_labels};
+use super::settings::mismatches;
 use crate::FlightError;
-use crate::exported::{AFTER_STEP, POINT_AT, T_OF, control_labels, load_axis, load_labels};
 use rotor_export::{Axis, Document, LabelledArray};
 use rotor_study::case::{Case, HandedSet, HandedT};
 
@@ -10,6 +11,9 @@ use rotor_study::case::{Case, HandedSet, HandedT};
 /// Every array `T_HARMONICS` is one set: rows are the loads of the case, columns its controls, pages the points before a
 /// step of the thrust. Names, units and their order are those that the case exports. The advance ratios of the points come from
 /// the array `conditions`; without it, from their names, which hold four digits.
+///
+/// Weights, limits, conditions and inflow that the document was written with are compared with those of the case: what differs
+/// is told, and T is used all the same.
 ///
 /// # Errors
 /// [`FlightError::Arrays`] in words: no T, names, units, sizes or order that are not those of the case, numbers that are not
@@ -26,7 +30,7 @@ pub fn handed_t(case: &Case, document: &Document) -> Result<HandedT, FlightError
             names.join("`, `")
         )));
     }
-    Ok(HandedT { sets })
+    Ok(HandedT { sets, told: mismatches(case, document) })
 }
 
 fn wrong(message: String) -> FlightError {

@@ -1,6 +1,7 @@
 //! The linearised rotor of a case as matrices of state space with names and units.
 
-use crate::exported::{dissimilar_note, load_axis};
+use super::exported::dissimilar_note;
+use super::labels::load_axis;
 use crate::{FlightError, RotorPath};
 use nalgebra::DMatrix;
 use rotor_export::{Axis, Document, LabelledArray};

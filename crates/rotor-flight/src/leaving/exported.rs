@@ -1,10 +1,12 @@
 //! T at the knots of a case as arrays with names and units, and its controllers to be written in other languages.
 
+use super::labels::{AFTER_STEP, POINT_AT, T_OF, control_labels, load_axis, load_labels};
+use super::settings::{self, inflow_note};
 use crate::case_flight::{flight_of, guidance_of, path_of, ranged, unguided};
 use crate::{Flight, FlightError, FlightState, Guidance};
 use preisach_dyn::ActuatorModel;
 use rotor_export::{Axis, ControllerSpec, Document, LabelledArray, TKnowledge};
-use rotor_study::case::{Case, FlightController, FlightValues, InflowChoice, TInflowChoice};
+use rotor_study::case::{Case, FlightController, FlightValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, TrimmedRotor};
 
 /// Highest harmonic of the flaps that the rotor along a path is linearised for.
@@ -44,6 +46,7 @@ pub fn exported_case(case: &Case, model: &ActuatorModel) -> Result<Document, Fli
         notes: notes(case, values),
         arrays: vec![conditions(case, &points), baseline(case, &points), load_units(case)],
     };
+    document.arrays.extend(settings::arrays(case));
     for set in sets {
         if let Some(&n) = set.iter().find(|n| **n > HIGHEST_LINEARISED) {
             let (what, value) =
@@ -113,22 +116,9 @@ pub fn controllers_of_case(
 }
 
 fn notes(case: &Case, values: &FlightValues) -> Vec<String> {
-    let inflow = match &case.inflow.model {
-        InflowChoice::Uniform => "Uniform",
-        InflowChoice::Drees => "Drees",
-        InflowChoice::Prescribed { .. } => "Prescribed",
-        InflowChoice::PittPeters => "PittPeters",
-        InflowChoice::FreeWake(_) => "FreeWake",
-    };
-    let in_t = match case.control.t_inflow {
-        TInflowChoice::Frozen => "held as in trim",
-        TInflowChoice::Settled | TInflowChoice::Reconverged => {
-            "settled on the moved loading, the geometry of a free wake held"
-        }
-    };
     let mut notes = vec![
         "Z = Z0 + T u. Loads: cosine and sine of six hub loads in the fixed frame at the blade number per rev, X aft, Y starboard, Z up, over the units in `load_unit`. Controls: cosine and sine voltage of each flap at each harmonic, V; A cos(n psi - phase), psi = 0 over the tail.".to_owned(),
-        format!("Inflow: {inflow}; in T it is {in_t}. Pilot controls are held in T."),
+        inflow_note(case),
         format!("T: central differences about zero control with {} V, flaps and bias settled in their hysteresis, all others at rest.", case.t_step_volt()),
     ];
     let noise = values.noise_percent;
@@ -177,35 +167,6 @@ fn conditions(case: &Case, points: &[(FlightState, &TrimmedRotor)]) -> LabelledA
     LabelledArray::from_fn("conditions", meaning, vec![axis, point_axis(points)], |i, j, _| {
         each[j][i].2
     })
-}
-
-/// Names of the loads, without their unit.
-pub(crate) fn load_labels(case: &Case) -> Vec<String> {
-    let per_rev = case.rotor.blades;
-    let both = |name: &&str| ["cos", "sin"].map(|part| format!("{name}_{per_rev}_per_rev_{part}"));
-    HubLoads::NAMES.iter().flat_map(both).collect()
-}
-
-/// Names of the controls of so many flaps at a set of harmonics.
-pub(crate) fn control_labels(flaps: usize, set: &[usize]) -> Vec<String> {
-    (1..=flaps)
-        .flat_map(|flap| set.iter().map(move |n| (flap, n)))
-        .flat_map(|(flap, n)| ["cos", "sin"].map(|part| format!("flap{flap}_{n}_per_rev_{part}_V")))
-        .collect()
-}
-
-/// How names of arrays of T begin; the harmonics follow, with lines between them.
-pub(crate) const T_OF: &str = "T_";
-/// How names of points begin; the advance ratio follows.
-pub(crate) const POINT_AT: &str = "mu_";
-/// How names of points after a step of the thrust end.
-pub(crate) const AFTER_STEP: &str = "_after_thrust_step";
-
-/// Nondimensional loads by their labels: forces, then as many moments.
-pub(crate) fn load_axis(labels: Vec<String>) -> Axis {
-    let unit = |k: usize| if k < labels.len() / 2 { "m0 Omega^2 R^2" } else { "m0 Omega^2 R^3" };
-    let units = (0..labels.len()).map(|k| unit(k).to_owned()).collect();
-    Axis { name: "load".to_owned(), labels, units }
 }
 
 /// What a case with blades unlike the rest is told.

@@ -1,0 +1,123 @@
+//! What a T was found with and is meant for: weights, limits and conditions of its case, which go into its file and are compared
+//! with the case that it is handed to.
+
+use super::labels::load_labels;
+use rotor_export::{Axis, Document, LabelledArray};
+use rotor_study::case::{Case, InflowChoice, LoadScaleChoice, TInflowChoice};
+
+/// Names of the arrays.
+const SETTINGS: &str = "settings";
+const LOAD_WEIGHT: &str = "load_weight";
+/// How the note on the inflow begins.
+const INFLOW_NOTE: &str = "Inflow: ";
+/// Difference of two numbers of the same meaning that is none, as a part of them.
+const ALIKE: f64 = 1e-9;
+
+/// A number of a case: name, unit, value, and the field that says it.
+type Setting = (&'static str, &'static str, f64, &'static str);
+
+/// Conditions of T0 and limits of a case; those of the flight where there is one.
+fn of_case(case: &Case) -> Vec<Setting> {
+    let (control, actuator) = (&case.control, &case.actuator);
+    let is_over_baseline = control.load_scale == LoadScaleChoice::Baseline;
+    let thrust = case.trim.ct_sigma().map(|value| ("ct_sigma", "", value, "trim"));
+    let all = [
+        ("rotor_rpm", "1/min", case.rotor.omega_rpm, "rotor.omega_rpm"),
+        ("step_V", "V", case.t_step_volt(), "control.t_step_deg"),
+        ("bias_V", "V", control.drive_bias().volt(), "control.bias_V"),
+        ("lowest_V", "V", actuator.range_volt.0, "actuator.range_V"),
+        ("highest_V", "V", actuator.range_volt.1, "actuator.range_V"),
+        ("full_scale_V", "V", control.amplitude_volt, "control.amplitude_V"),
+        ("weights_over_baseline", "", f64::from(u8::from(is_over_baseline)), "control.load_scale"),
+    ];
+    let flight = case.flight.iter().flat_map(|flight| {
+        [
+            ("amplitude_limit_V", "V", flight.amplitude_limit_volt, "flight.amplitude_limit_V"),
+            ("rate_limit_V", "V", flight.rate_limit_volt, "flight.rate_limit_V"),
+            ("gain", "", flight.gain, "flight.gain"),
+        ]
+    });
+    thrust.into_iter().chain(all).chain(flight).collect()
+}
+
+/// Weight of each of the twelve loads in `J`, that of the case.
+fn weights(case: &Case) -> [f64; 12] {
+    let w = &case.control.load_weights;
+    let each = [w.fx, w.fy, w.fz, w.mx, w.my, w.mz];
+    std::array::from_fn(|k| each[k / 2])
+}
+
+/// The arrays `settings` and `load_weight` of a case.
+pub(super) fn arrays(case: &Case) -> [LabelledArray; 2] {
+    let all = of_case(case);
+    let of = |text: fn(&Setting) -> &'static str| all.iter().map(move |own| text(own).to_owned());
+    let axis = Axis {
+        name: "setting".to_owned(),
+        labels: of(|own| own.0).collect(),
+        units: of(|own| own.1).collect(),
+    };
+    let meaning = "what T was found with and is limited by: thrust over solidity that is trimmed to, rotor speed, step of T, bias, range and full scale of the actuator, 1 where the weights are over the squared load without control, limits, rate weight and gain of the flight";
+    let settings = LabelledArray::from_fn(SETTINGS, meaning, vec![axis], |i, _, _| all[i].2);
+    let axis = Axis::of_unit("load", load_labels(case), "");
+    let weights = weights(case);
+    let meaning = "diagonal of W in J = Z'WZ, loads over their `load_unit`";
+    let weights = LabelledArray::from_fn(LOAD_WEIGHT, meaning, vec![axis], |i, _, _| weights[i]);
+    [settings, weights]
+}
+
+/// The inflow of a case, and what it does in T.
+pub(super) fn inflow_note(case: &Case) -> String {
+    let inflow = match &case.inflow.model {
+        InflowChoice::Uniform => "Uniform",
+        InflowChoice::Drees => "Drees",
+        InflowChoice::Prescribed { .. } => "Prescribed",
+        InflowChoice::PittPeters => "PittPeters",
+        InflowChoice::FreeWake(_) => "FreeWake",
+    };
+    let in_t = match case.control.t_inflow {
+        TInflowChoice::Frozen => "held as in trim",
+        TInflowChoice::Settled | TInflowChoice::Reconverged => {
+            "settled on the moved loading, the geometry of a free wake held"
+        }
+    };
+    format!("{INFLOW_NOTE}{inflow}; in T it is {in_t}. Pilot controls are held in T.")
+}
+
+/// What a document says otherwise than a case, in sentences; that it says nothing where it does.
+pub(super) fn mismatches(case: &Case, document: &Document) -> Vec<String> {
+    let named = |name: &str| document.arrays.iter().find(|array| array.name == name);
+    let (Some(settings), Some(weight)) = (named(SETTINGS), named(LOAD_WEIGHT)) else {
+        return vec![
+            "The T that is handed in comes without `settings` and `load_weight`: nobody can say whether it was found for the weights, limits and conditions of this case. The JSON of `hhc export --what t` holds them.".to_owned(),
+        ];
+    };
+    let at = |array: &LabelledArray, label: &str| {
+        let place = array.axes.first()?.labels.iter().position(|own| own == label)?;
+        array.at(place, 0, 0)
+    };
+    let differs = |array: &LabelledArray, label: &str, own: f64, field: &str| {
+        let found = at(array, label)?;
+        let is_alike = (found - own).abs() <= ALIKE * found.abs().max(own.abs());
+        (!is_alike).then(|| {
+            format!(
+                "The T that is handed in was found with `{label}` {found}, the case has {own} (`{field}`)."
+            )
+        })
+    };
+    let settings = of_case(case)
+        .into_iter()
+        .filter_map(|(label, _, own, field)| differs(settings, label, own, field));
+    let labels = load_labels(case);
+    // cosine and sine of a load have one weight
+    let weights = labels
+        .iter()
+        .zip(weights(case))
+        .step_by(2)
+        .filter_map(|(label, own)| differs(weight, label, own, "control.load_weights"));
+    let own = inflow_note(case);
+    let found = document.notes.iter().find(|note| note.starts_with(INFLOW_NOTE));
+    let inflow = found.filter(|note| **note != own).map(|found| {
+        format!("The T that is handed in was found otherwise. {found} The case has: {own}")
+    });
+    settings.chain(weights).chain(inflow).collect()
+}
