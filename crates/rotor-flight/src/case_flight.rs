@@ -3,13 +3,15 @@
 use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
-use rotor_study::case::{Case, FailureNotice, FlightController, FlightValues, TrimValues};
+use rotor_study::case::{Case, FlightController, FlightValues, Notice, TrimValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
 use serde::Serialize;
 
 /// What an adaptive controller takes T0 for in flight: its error, and its change over full scale, as parts of itself.
 const T0_UNCERTAINTY: f64 = 0.1;
 const T_DRIFT: f64 = 0.05;
+/// Least noise that a controller is told, part of the loads: the rotor is not linear to the last digit.
+const LEAST_NOISE: f64 = 1e-3;
 /// Cycles that count as the end of a flight, and how far `J / J0` may lie from their mean when it has settled.
 const END_CYCLES: usize = 10;
 const SETTLED_WITHIN: f64 = 0.05;
@@ -62,7 +64,9 @@ impl FlightSummary {
         let count = points.len() as f64;
         let mean = |of: &dyn Fn(&FlightPoint) -> f64| points.iter().map(of).sum::<f64>() / count;
         let last = &points[points.len().saturating_sub(END_CYCLES)..];
-        let end = last.iter().map(|p| p.cost_ratio).sum::<f64>() / last.len() as f64;
+        let at_end =
+            |of: &dyn Fn(&FlightPoint) -> f64| last.iter().map(of).sum::<f64>() / last.len() as f64;
+        let end = at_end(&|p| p.cost_ratio);
         let is_off = |p: &FlightPoint| (p.cost_ratio - end).abs() > SETTLED_WITHIN;
         let settled = points.iter().rposition(is_off).map_or(0, |k| k + 1);
         let settles_in_s = (settled + last.len() <= points.len())
@@ -136,6 +140,7 @@ pub(crate) fn unguided<'a>(
         gain: values.gain,
         amplitude_limit_volt: vec![values.amplitude_limit_volt; layout.pairs()],
         rate_limit_volt: values.rate_limit_volt,
+        rate_weight: values.rate_weight,
         ..RelaxedSettings::of_layout(&layout)
     };
     Ok(Flight {
@@ -156,7 +161,7 @@ pub(crate) fn unguided<'a>(
             flap: failed.flap - 1,
             time_s: failed.at_s,
             stuck_deg: failed.stuck_deg,
-            is_told: failed.notice == FailureNotice::Told,
+            is_told: failed.notice == Notice::Told,
         }),
         cycle_rev: [values.settling_rev, values.window_rev],
         step_volt: case.t_step_volt(),
@@ -200,9 +205,15 @@ pub(crate) fn guidance_of(
             uncertainty: T0_UNCERTAINTY,
             drift: T_DRIFT,
             baseline_drift: 0.01 * values.z0_walk_percent,
+            noise_share: (values.noise_notice == Notice::Told).then(|| told_noise(values)),
             ..EstimatorSettings::in_flight(case.control.amplitude_volt)
         }),
     }
+}
+
+/// Noise of a load as a cycle measures it, the mean over its window, part of the loads at the start.
+fn told_noise(values: &FlightValues) -> f64 {
+    (0.01 * values.noise_percent / (values.window_rev as f64).sqrt()).max(LEAST_NOISE)
 }
 
 /// When the last change of the schedule has ended, s; 0 without any.
@@ -213,4 +224,26 @@ pub(crate) fn last_disturbance_s(values: &FlightValues) -> f64 {
         values.failed_flap.map(|failed| failed.at_s),
     ];
     ends.into_iter().flatten().filter(|end| *end < values.duration_s).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is told is the noise that a cycle's window leaves of that of a revolution.
+    #[test]
+    fn the_noise_that_is_told_is_that_of_a_cycle() {
+        let case = Case::default();
+        let share =
+            |values: &FlightValues| match guidance_of(FlightController::Adaptive, &case, values) {
+                Guidance::Adaptive(settings) => settings.noise_share,
+                _ => None,
+            };
+        let untold = FlightValues { noise_percent: 4.0, window_rev: 4, ..FlightValues::default() };
+        assert_eq!(share(&untold), None);
+        let told = FlightValues { noise_notice: Notice::Told, ..untold };
+        assert!((share(&told).unwrap() - 0.02).abs() < 1e-15);
+        let quiet = FlightValues { noise_percent: 0.0, ..told };
+        assert!(share(&quiet).unwrap() > 0.0, "a filter is never told that there is none");
+    }
 }

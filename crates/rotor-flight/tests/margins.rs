@@ -108,6 +108,25 @@ fn a_t_that_is_handed_in_meets_the_rotor_as_it_is() {
     }
 }
 
+/// A weight of the change slows the loop, and the radius knows it: by `(1 - gain)` of the way without one, hardly at all with
+/// one that outweighs T. The flight takes the smaller steps.
+#[test]
+fn a_weight_of_the_change_slows_the_loop() {
+    let case = case();
+    let of = |rate_weight: f64| {
+        let values = FlightValues { rate_weight, knots: 2, ..values(&[3]) };
+        let flying = FlyingCase::new(&case, &values, &ideal()).unwrap();
+        let radius = flying.margins().unwrap().sets[0].points[0].radius[0];
+        let flown = flying.fly(&|| ()).unwrap();
+        let first = flown.flights[0].points[1].control_volt.iter().map(|u| u * u).sum::<f64>();
+        (radius, first.sqrt())
+    };
+    let (free, weighed) = (of(0.0), of(1e-6));
+    println!("radius and first step, V: {free:?} without, {weighed:?} with a weight");
+    assert!((free.0 - 0.5).abs() < 1e-3 && weighed.0 > 0.99, "{free:?} {weighed:?}");
+    assert!(weighed.1 < 0.1 * free.1 && weighed.1 > 0.0, "{free:?} {weighed:?}");
+}
+
 /// The draws of every controller are those of the same seeds, and the spread is that of its flights.
 #[test]
 fn draws_are_common_and_their_spread_is_that_of_the_flights() {

@@ -391,7 +391,7 @@ impl Controlled {
         let settings = RelaxedSettings {
             load_weights,
             effort_weight,
-            rate_weight: 0.0,
+            rate_weight: study.values.rate_weight,
             gain: study.values.gain,
             amplitude_limit_volt: (0..layout.pairs()).map(limit).collect(),
             rate_limit_volt: study.values.rate_limit_volt,

@@ -34,6 +34,7 @@ fn of_case(case: &Case) -> Vec<Setting> {
         [
             ("amplitude_limit_V", "V", flight.amplitude_limit_volt, "flight.amplitude_limit_V"),
             ("rate_limit_V", "V", flight.rate_limit_volt, "flight.rate_limit_V"),
+            ("rate_weight", "1/V^2", flight.rate_weight, "flight.rate_weight"),
             ("gain", "", flight.gain, "flight.gain"),
         ]
     });

@@ -25,17 +25,16 @@ impl FlightController {
     }
 }
 
-/// Whether the controller hears of a flap that fails.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum FailureNotice {
-    /// At the end of the cycle.
-    #[default]
+/// Whether a controller is told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Notice {
+    /// It is.
     Told,
-    /// Never.
+    /// It is not.
     Untold,
 }
 
-values!(FailureNotice);
+values!(Notice);
 
 impl Value for Vec<FlightController> {
     fn choices() -> &'static [&'static str] {
@@ -91,6 +90,11 @@ section! {
             "20 V for each of four harmonics leave the full scale of 85 V to all of them";
         /// Largest change of it in a cycle.
         pub rate_limit_volt as "rate_limit_V": f64 = 10.0, UpTo(1e4), "V", "10 V is usual";
+        /// Weight `s` of the change of the control in a cycle: `s du'du` beside `J`. The square of the largest singular
+        /// value of T is its scale, some 1e-12 to 1e-10.
+        pub rate_weight: f64 = 0.0, Within(0.0, 1e6), "1/V^2", "0 leaves it out";
+        /// Whether the adaptive controller is told `noise_percent`. `Untold`: it estimates the noise.
+        pub noise_notice: Notice = Notice::Untold, Any, "", "";
         /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.
         pub z0_walk_percent: f64 = 20.0, Within(1e-2, 100.0), "%", "20 % for manoeuvres, 1 % for steady flight";
     }
@@ -129,6 +133,6 @@ section! {
         /// Angle at which it is stuck, trailing edge down positive.
         pub stuck_deg: f64 = 0.0, Within(-20.0, 20.0), "deg", "the rotor is linear in its flaps: a few deg";
         /// Whether the controller hears of it, at the end of the cycle.
-        pub notice: FailureNotice = FailureNotice::Told, Any, "", "";
+        pub notice: Notice = Notice::Told, Any, "", "";
     }
 }

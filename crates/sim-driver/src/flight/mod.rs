@@ -6,7 +6,7 @@ pub use page::flight_html;
 
 use crate::SimError;
 use crate::actuator::case_actuators;
-use crate::case::{Case, FailureNotice, FlightValues, LoadedCase};
+use crate::case::{Case, FlightValues, LoadedCase, Notice};
 use crate::output::{Printable, Sheet};
 use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
@@ -156,13 +156,14 @@ fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
         format!("Thrust: times {} within {} s from {} s on.", step.ratio, step.length_s, step.at_s)
     }));
     notes.extend(values.failed_flap.map(|failed| {
-        let told = if failed.notice == FailureNotice::Told { "told" } else { "not told" };
+        let told = if failed.notice == Notice::Told { "told" } else { "not told" };
         let (flap, at_s, stuck_deg) = (failed.flap, failed.at_s, failed.stuck_deg);
         format!("Failure: flap {flap} stuck at {stuck_deg} deg from {at_s} s on; the controller is {told}.")
     }));
     let (noise, seed) = (values.noise_percent, values.seed);
+    let told = if values.noise_notice == Notice::Told { "told to" } else { "estimated by" };
     notes.push(format!(
-        "Noise: {noise} % of the loads at the start in each revolution, seed {seed}."
+        "Noise: {noise} % of the loads at the start in each revolution, seed {seed}; {told} the adaptive controller."
     ));
     notes
 }

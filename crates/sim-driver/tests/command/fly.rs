@@ -172,6 +172,8 @@ fn flights_that_cannot_be_are_refused() {
         ("amplitude_limit_V: 0", ["flight.amplitude_limit_V", "positive"]),
         ("rate_limit_V: NaN", ["flight.rate_limit_V", "positive"]),
         ("z0_walk_percent: 0", ["flight.z0_walk_percent", "expected 0.01 to 100"]),
+        ("rate_weight: -1", ["flight.rate_weight", "expected 0 to"]),
+        ("noise_notice: Loud", ["flight.noise_notice", "Loud"]),
     ] {
         flying(flight).hhc(&["fly", "case.ron"]).rejected(&parts);
     }
