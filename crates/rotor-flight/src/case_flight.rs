@@ -1,9 +1,10 @@
 //! The flight that a case describes.
 
+use crate::blades::check_orders;
 use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
-use rotor_study::case::{Case, FlightController, FlightValues, Notice, TrimValues};
+use rotor_study::case::{Case, FailedOn, FlightController, FlightValues, Notice, TrimValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
 use serde::Serialize;
 
@@ -47,6 +48,10 @@ pub struct FlightSummary {
     pub worst_at_s: f64,
     /// Mean over the last ten cycles.
     pub end_cost_ratio: f64,
+    /// Mean over the last ten cycles of `J` of the loads at 1/rev over `J0`.
+    pub end_once_per_rev_ratio: f64,
+    /// The same of those at 2 to twice the blade number less one per rev, but for the blade number.
+    pub end_other_ratio: f64,
     /// Time from the last disturbance of the schedule until `J / J0` stays within 0.05 of the mean of the last ten cycles, s;
     /// none if it does not before these.
     pub settles_in_s: Option<f64>,
@@ -81,6 +86,8 @@ impl FlightSummary {
             worst_cost_ratio,
             worst_at_s,
             end_cost_ratio: end,
+            end_once_per_rev_ratio: at_end(&|p| p.once_per_rev_ratio),
+            end_other_ratio: at_end(&|p| p.other_ratio),
             settles_in_s,
             limited_share: mean(&|p| f64::from(u8::from(p.is_limited))),
             held_share: mean(&|p| p.held_share),
@@ -104,9 +111,16 @@ pub(crate) fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, F
     let knots = if values.is_level() { 1 } else { values.knots };
     let place = |k: usize| low + span * k as f64 / (knots - 1).max(1) as f64;
     let path = RotorPath::new(case, &(0..knots).map(place).collect::<Vec<f64>>())?;
-    match &values.thrust_step {
+    let path = match &values.thrust_step {
+        None => path,
+        Some(step) => path.with_thrust_step(&at_thrust(case, step.ratio))?,
+    };
+    match values.failed_flap.filter(|failed| failed.on == FailedOn::OneBlade) {
         None => Ok(path),
-        Some(step) => path.with_thrust_step(&at_thrust(case, step.ratio)),
+        Some(failed) => {
+            check_orders(case)?;
+            path.with_one_blade(failed.flap - 1)
+        }
     }
 }
 
@@ -161,7 +175,9 @@ pub(crate) fn unguided<'a>(
             flap: failed.flap - 1,
             time_s: failed.at_s,
             stuck_deg: failed.stuck_deg,
+            kept_share: 0.01 * failed.kept_percent,
             is_told: failed.notice == Notice::Told,
+            is_on_one_blade: failed.on == FailedOn::OneBlade,
         }),
         cycle_rev: [values.settling_rev, values.window_rev],
         step_volt: case.t_step_volt(),

@@ -52,6 +52,14 @@ pub enum FlightError {
         /// Its own error.
         source: PreisachError,
     },
+    /// A flap of one blade alone whose answer the rotor was not asked for.
+    #[error(
+        "flap {flap} (from 0) fails on one blade, and the rotor does not know what it does alone: make its path by `RotorPath::with_one_blade`"
+    )]
+    OneBlade {
+        /// Which one.
+        flap: usize,
+    },
     /// T that a user hands in.
     #[error(transparent)]
     HandedT(#[from] HandedTError),
@@ -74,6 +82,7 @@ impl FlightError {
             Self::WakeDiverged { .. } => "inflow.model",
             Self::Actuator { .. } => "actuator",
             Self::HandedT(_) | Self::Arrays { .. } => "control.t_file",
+            Self::OneBlade { .. } => "flight.failed_flap",
             Self::OutOfRange { .. } | Self::Response { .. } | Self::Control(_) => "flight",
         }
     }

@@ -11,7 +11,7 @@ use rotor_study::case::HandedSet;
 /// Revolutions that settle flaps and bias before T is identified.
 const SETTLED_REV: usize = 12;
 
-/// A flap that stops at a time and stays where it is stuck, on every blade.
+/// A flap that stops at a time where it is stuck, or goes on weakly, on every blade or on one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlapFailure {
     /// Which one, from 0.
@@ -20,8 +20,12 @@ pub struct FlapFailure {
     pub time_s: f64,
     /// Angle at which it stays, deg.
     pub stuck_deg: f64,
-    /// Whether the controller is told at the end of that cycle.
+    /// Part of its motion that it keeps about that angle, 0 to 1; 0 for a flap that stands.
+    pub kept_share: f64,
+    /// Whether the controller is told at the end of that cycle; it then leaves the flap out on every blade.
     pub is_told: bool,
+    /// Whether it fails on one blade alone; the path must know that flap ([`RotorPath::with_one_blade`]).
+    pub is_on_one_blade: bool,
 }
 
 /// One flight: rotor, actuators, schedule and loop.

@@ -1,5 +1,6 @@
 //! The loop along a flight.
 
+use crate::blades::{highest, of_order};
 use crate::flaps::HARMONICS;
 use crate::flight::motions;
 use crate::pilot::Pilot;
@@ -9,7 +10,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rotor_base::HarmonicSeries;
-use rotor_study::HUB_OUTPUTS;
+use rotor_study::{HUB_OUTPUTS, scaled, weighted};
 use serde::Serialize;
 
 /// One cycle of a flight: what its window has seen.
@@ -25,6 +26,10 @@ pub struct FlightPoint {
     pub cost: f64,
     /// `J / J0`: over that without control in the same state.
     pub cost_ratio: f64,
+    /// `J` of the loads at 1/rev over `J0`; 0 while all blades are alike.
+    pub once_per_rev_ratio: f64,
+    /// `J` of those at 2 to twice the blade number less one per rev, but for the blade number, over `J0`; likewise.
+    pub other_ratio: f64,
     /// Loads without noise, cosine and sine of six at the blade number per rev, nondimensional.
     pub loads: [f64; HUB_OUTPUTS],
     /// The same without control.
@@ -33,7 +38,7 @@ pub struct FlightPoint {
     pub control_volt: Vec<f64>,
     /// Whether a limit of an amplitude bound when it was chosen.
     pub is_limited: bool,
-    /// Amplitudes of every flap at 1, 2 ... 12 per rev in the last revolution, deg.
+    /// Amplitudes of every flap at 1, 2 ... 12 per rev in the last revolution, deg; of a sound blade where one has failed.
     pub flap_deg: Vec<Vec<f64>>,
     /// Lowest and highest voltage of every flap in the cycle.
     pub volt: Vec<[f64; 2]>,
@@ -63,11 +68,27 @@ impl Flown<'_> {
         Cost::of(loads, &self.weights, &[], 0.0).loads
     }
 
+    /// What a failure makes of the motions of a revolution, deg. On one blade the others go on: the flap (from 0), and by how
+    /// much it moves otherwise than theirs.
+    fn fail(&self, motion: &mut [HarmonicSeries]) -> Option<(usize, HarmonicSeries)> {
+        let failed = self.flight.failure.filter(|failure| self.time_s() > failure.time_s)?;
+        let flap = motion.get_mut(failed.flap)?;
+        let mut left = scaled(flap, failed.kept_share);
+        left.mean += failed.stuck_deg;
+        if failed.is_on_one_blade {
+            return Some((failed.flap, weighted(&left, flap, 1.0)));
+        }
+        *flap = left;
+        None
+    }
+
     /// One cycle under a control: what it was, and the loads that were measured.
     fn cycle(&mut self, pilot: &Pilot) -> Result<(FlightPoint, [f64; HUB_OUTPUTS]), FlightError> {
         let flight = self.flight;
         let [settling, window] = flight.cycle_rev;
         let (mut loads, mut measured) = ([0.0; HUB_OUTPUTS], [0.0; HUB_OUTPUTS]);
+        let blades = flight.path.blades();
+        let mut of_one_blade = vec![0.0; highest(blades) * HUB_OUTPUTS];
         let mut volt = vec![[f64::INFINITY, f64::NEG_INFINITY]; flight.layout.flaps()];
         let (mut motion, mut held_share) = (Vec::new(), 0.0);
         for rev in 0..settling + window {
@@ -78,15 +99,21 @@ impl Flown<'_> {
                 held_share += turn.held_share / (turns.len() * (settling + window)) as f64;
             }
             motion = motions(&turns);
-            if let Some(failed) = flight.failure.filter(|failure| self.time_s() > failure.time_s)
-                && let Some(flap) = motion.get_mut(failed.flap)
-            {
-                *flap = HarmonicSeries { mean: failed.stuck_deg, ..HarmonicSeries::zero(0) };
-            }
+            let change = self.fail(&mut motion);
             if rev < settling {
                 continue;
             }
-            let found = flight.path.loads(flight.state_at(self.time_s()), &motion)?;
+            let state = flight.state_at(self.time_s());
+            let mut found = flight.path.loads(state, &motion)?;
+            if let Some((flap, change_deg)) = change {
+                let added = flight.path.one_blade_loads(state, flap, &change_deg)?;
+                for (found, added) in found.iter_mut().zip(&added[of_order(blades)]) {
+                    *found += added;
+                }
+                for (sum, added) in of_one_blade.iter_mut().zip(added) {
+                    *sum += added / window as f64;
+                }
+            }
             for ((load, seen), found) in loads.iter_mut().zip(&mut measured).zip(found) {
                 let draw: f64 = StandardNormal.sample(&mut self.random);
                 *load += found / window as f64;
@@ -95,6 +122,8 @@ impl Flown<'_> {
         }
         let (time_s, state) = (self.time_s(), flight.state_at(self.time_s()));
         let (cost, loads_at_rest) = (self.cost(&loads), flight.path.loads(state, &[])?);
+        let at_rest = self.cost(&loads_at_rest);
+        let share = |order: usize| self.cost(&of_one_blade[of_order(order)]) / at_rest;
         let amplitudes = |flap: &HarmonicSeries| {
             (1..=HARMONICS as usize).map(|n| flap.harmonic(n).amplitude()).collect()
         };
@@ -103,7 +132,9 @@ impl Flown<'_> {
             advance_ratio: state.advance_ratio,
             thrust_share: state.thrust_share,
             cost,
-            cost_ratio: cost / self.cost(&loads_at_rest),
+            cost_ratio: cost / at_rest,
+            once_per_rev_ratio: share(1),
+            other_ratio: (2..=highest(blades)).filter(|&n| n != blades).map(share).sum(),
             loads,
             loads_at_rest,
             control_volt: pilot.control_volt().to_vec(),

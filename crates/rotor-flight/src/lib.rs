@@ -4,6 +4,7 @@
 //!   linearised there and interpolated linearly in between. Every revolution is a steady state.
 //! - *Flaps* ([`FlapMarch`]): every actuator is marched sample by sample through its hysteresis, all harmonics at once, its
 //!   bias slowly led so that the mean flap angle vanishes.
+//! - *One blade* ([`RotorPath::with_one_blade`]): what a flap that fails on one blade alone brings to the hub, at every harmonic.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`FlyingCase`]): the flight that a case describes, its controllers side by side, many draws of its noise, and how
 //!   wrong T may be along it.
@@ -14,6 +15,7 @@
 //!
 //! Values in, values out: no file, no terminal.
 
+mod blades;
 mod case_flight;
 mod error;
 mod failures;
@@ -43,9 +45,9 @@ pub use margins::{MarginPoint, MarginSet, MarginStudy};
 pub use path::{FlightState, RotorPath};
 pub use pilot::Guidance;
 pub use shown::{
-    BESIDE_FILES, draws_csv, draws_pictures, draws_section, failures_csv, failures_section,
-    flight_csv, harmonic_names, is_own_table, load_amplitudes, margins_csv, margins_pictures,
-    margins_section,
+    BESIDE_FILES, controllers_section, draws_csv, draws_pictures, draws_section, failures_csv,
+    failures_section, flight_csv, harmonic_names, is_own_table, load_amplitudes, margins_csv,
+    margins_pictures, margins_section,
 };
 pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
 pub use wake_in_time::{

@@ -1,6 +1,7 @@
 //! The rotor along a path of advance ratios, before and after a step of the thrust.
 
 use crate::FlightError;
+use crate::blades::{OneBlade, highest};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_study::case::Case;
@@ -28,6 +29,8 @@ pub struct RotorPath {
     /// Before the step of the thrust; after it, if there is one.
     rows: Vec<Vec<TrimmedRotor>>,
     blades: usize,
+    /// What one flap (from 0) of one blade does at every trim, where it is asked for.
+    one_blade: Option<(usize, Vec<Vec<OneBlade>>)>,
 }
 
 impl RotorPath {
@@ -44,7 +47,7 @@ impl RotorPath {
         }
         let advance_ratios = advance_ratios.to_vec();
         let rows = vec![trims(case, &advance_ratios)?];
-        Ok(Self { advance_ratios, rows, blades: case.rotor.blades })
+        Ok(Self { advance_ratios, rows, blades: case.rotor.blades, one_blade: None })
     }
 
     /// The same with a step of the thrust to that of another case, trimmed at the same advance ratios.
@@ -54,6 +57,28 @@ impl RotorPath {
     pub fn with_thrust_step(mut self, after: &Case) -> Result<Self, FlightError> {
         self.rows.truncate(1);
         self.rows.push(trims(after, &self.advance_ratios)?);
+        self.one_blade = None;
+        Ok(self)
+    }
+
+    /// The same with what a flap (from 0) of one blade does to the hub when it moves otherwise than those of the others.
+    ///
+    /// # Errors
+    /// [`FlightError::OutOfRange`] for a flap that there is not; [`FlightError::Response`].
+    pub fn with_one_blade(mut self, flap: usize) -> Result<Self, FlightError> {
+        let has_flap = |rotor: &TrimmedRotor| flap < rotor.rotor().model().flaps.len();
+        if !self.rows.iter().flatten().all(has_flap) {
+            let (what, value) = ("flap that fails on one blade (from 0)", flap as f64);
+            return Err(FlightError::OutOfRange { what, value, expected: "one that there is" });
+        }
+        let at = |(&advance_ratio, rotor): (&f64, &TrimmedRotor)| {
+            let found = OneBlade::new(rotor, flap);
+            found.map_err(|source| FlightError::Response { advance_ratio, source })
+        };
+        let of_row =
+            |row: &Vec<TrimmedRotor>| self.advance_ratios.iter().zip(row).map(at).collect();
+        let found = self.rows.iter().map(of_row).collect::<Result<Vec<Vec<_>>, FlightError>>()?;
+        self.one_blade = Some((flap, found));
         Ok(self)
     }
 
@@ -67,7 +92,8 @@ impl RotorPath {
         flaps_deg: &[HarmonicSeries],
     ) -> Result<[f64; HUB_OUTPUTS], FlightError> {
         let mut loads = [0.0; HUB_OUTPUTS];
-        for (at, rotor, weight) in self.about(state) {
+        for (place, weight) in self.about(state) {
+            let (at, rotor) = self.knot(place);
             let authority = authority(at, rotor)?;
             let own = rotor.trim().rotor.hub.harmonic(self.blades);
             let moved = flaps_deg.iter().enumerate();
@@ -81,6 +107,32 @@ impl RotorPath {
         Ok(loads)
     }
 
+    /// Hub loads at 1 to twice the blade number less one per rev, twelve each, that a flap (from 0) of one blade adds where it
+    /// moves otherwise than that of the others, by so much, deg; nondimensional. Its inflow is that of the trim.
+    ///
+    /// # Errors
+    /// [`FlightError::OneBlade`] for a flap that [`Self::with_one_blade`] was not asked for.
+    pub fn one_blade_loads(
+        &self,
+        state: FlightState,
+        flap: usize,
+        change_deg: &HarmonicSeries,
+    ) -> Result<Vec<f64>, FlightError> {
+        let Some((_, known)) = self.one_blade.as_ref().filter(|(own, _)| *own == flap) else {
+            return Err(FlightError::OneBlade { flap });
+        };
+        let mut loads = vec![0.0; highest(self.blades) * HUB_OUTPUTS];
+        for ((row, k), weight) in self.about(state) {
+            known[row][k].add(change_deg, weight, &mut loads);
+        }
+        Ok(loads)
+    }
+
+    /// Number of blades.
+    pub(crate) fn blades(&self) -> usize {
+        self.blades
+    }
+
     /// Mean power that the actuators of one blade give, none taken back, W; the mean of the knots by their weights.
     ///
     /// # Errors
@@ -91,7 +143,8 @@ impl RotorPath {
         flaps_deg: &[HarmonicSeries],
     ) -> Result<f64, FlightError> {
         let flaps_deg: Vec<&HarmonicSeries> = flaps_deg.iter().collect();
-        let each = self.about(state).map(|(advance_ratio, rotor, weight)| {
+        let each = self.about(state).map(|(place, weight)| {
+            let (advance_ratio, rotor) = self.knot(place);
             let found = rotor.linear_power_watt(&flaps_deg);
             Ok(weight * found.map_err(|source| FlightError::Response { advance_ratio, source })?)
         });
@@ -113,15 +166,20 @@ impl RotorPath {
         })
     }
 
-    /// The knots about a state: advance ratio, rotor and weight.
-    fn about(&self, state: FlightState) -> impl Iterator<Item = (f64, &TrimmedRotor, f64)> {
+    /// Advance ratio and rotor of a row and a knot.
+    fn knot(&self, (row, k): (usize, usize)) -> (f64, &TrimmedRotor) {
+        (self.advance_ratios[k], &self.rows[row][k])
+    }
+
+    /// The knots about a state: row and place in it, and the weight.
+    fn about(&self, state: FlightState) -> impl Iterator<Item = ((usize, usize), f64)> + use<> {
         let share = if self.rows.len() > 1 { state.thrust_share } else { 0.0 };
         let columns = self.weights(state.advance_ratio);
-        let rows = self.rows.iter().zip([1.0 - share, share]);
+        let rows = [1.0 - share, share].into_iter().take(self.rows.len()).enumerate();
         rows.flat_map(move |(row, of_row)| {
-            columns.map(|(k, of_column)| (self.advance_ratios[k], &row[k], of_row * of_column))
+            columns.map(|(k, of_column)| ((row, k), of_row * of_column))
         })
-        .filter(|(_, _, weight)| *weight > 0.0)
+        .filter(|(_, weight)| *weight > 0.0)
     }
 
     /// The two knots about an advance ratio with their weights.

@@ -128,7 +128,14 @@ fn a_failure_is_taken_up() {
         flight
     };
     let failing = |flight: &Flight<'_>, flap, time_s: f64, is_told| {
-        let failure = Some(FlapFailure { flap, time_s, stuck_deg: 0.0, is_told });
+        let failure = Some(FlapFailure {
+            flap,
+            time_s,
+            stuck_deg: 0.0,
+            kept_share: 0.0,
+            is_told,
+            is_on_one_blade: false,
+        });
         fly(&Flight { failure, ..flight.clone() }, &adaptive).unwrap()
     };
     for flap in [0, 1] {

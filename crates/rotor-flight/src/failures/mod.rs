@@ -1,10 +1,8 @@
 //! What control reaches when a flap, an actuator or a load cell fails: with controllers that are told and not, for blades
 //! under one control and for each blade under its own.
 
-mod blades;
-
 use crate::FlightError;
-use blades::{BladeByBlade, Motions, highest, of_order};
+use crate::blades::{BladeByBlade, Motions, check_orders, highest, of_order};
 use hhc_control::{
     ControlError, ControlLayout, FeedbackLaw, LoadWeights, RelaxedController, RelaxedSettings,
     TMatrix,
@@ -153,14 +151,8 @@ pub struct FailureStudy {
 /// # Errors
 /// [`FlightError`]: trim, response, controller; load harmonics below twice the blade number less one.
 pub fn failures_of_case(case: &Case, values: &FlightValues) -> Result<FailureStudy, FlightError> {
-    let (advance_ratio, orders) = (case.advance_ratio, highest(case.rotor.blades));
-    if case.response.load_harmonics < orders {
-        return Err(FlightError::OutOfRange {
-            what: "`response.load_harmonics` (per rev)",
-            value: case.response.load_harmonics as f64,
-            expected: "twice the number of blades less one or more, for the loads that failures make",
-        });
-    }
+    let advance_ratio = case.advance_ratio;
+    check_orders(case)?;
     let rotor = TrimmedRotor::new(case, None)
         .map_err(|source| FlightError::Trim { advance_ratio, source: Box::new(source) })?;
     if rotor.wake_diverged() {

@@ -53,6 +53,8 @@ fn fields(
         ("thrust_share", point.thrust_share),
         ("j", point.cost),
         ("j_over_j0", point.cost_ratio),
+        ("once_per_rev_over_j0", point.once_per_rev_ratio),
+        ("others_over_j0", point.other_ratio),
         ("power_W", point.power_watt),
         ("limited", f64::from(u8::from(point.is_limited))),
         ("held_percent", 100.0 * point.held_share),

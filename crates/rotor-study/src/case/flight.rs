@@ -34,7 +34,16 @@ pub enum Notice {
     Untold,
 }
 
-values!(Notice);
+/// Blades on which a flap fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FailedOn {
+    /// All of them, which stay alike.
+    EveryBlade,
+    /// One, the others go on.
+    OneBlade,
+}
+
+values!(Notice, FailedOn);
 
 impl Value for Vec<FlightController> {
     fn choices() -> &'static [&'static str] {
@@ -122,7 +131,7 @@ section! {
 }
 
 section! {
-    /// A flap that stops and stays where it is stuck, on every blade.
+    /// A flap that stops where it is stuck, or goes on weakly, on every blade or on one.
     #[derive(Copy)]
     #[serde(deny_unknown_fields, default)]
     pub struct FailedFlap {
@@ -132,7 +141,12 @@ section! {
         pub at_s: f64 = 50.0, Rule("0 to `duration_s`"), "s", "";
         /// Angle at which it is stuck, trailing edge down positive.
         pub stuck_deg: f64 = 0.0, Within(-20.0, 20.0), "deg", "the rotor is linear in its flaps: a few deg";
-        /// Whether the controller hears of it, at the end of the cycle.
+        /// Part of its motion that it keeps about that angle; 0: it stands.
+        pub kept_percent: f64 = 0.0, Within(0.0, 100.0), "%", "80 is a flap that is 20 % weak";
+        /// Whether the controller hears of it, at the end of the cycle; it then leaves that flap out on every blade.
         pub notice: Notice = Notice::Told, Any, "", "";
+        /// Blades on which it fails. `OneBlade`: the others go on, and the hub feels 1/rev and other harmonics that
+        /// blades alike cancel.
+        pub on: FailedOn = FailedOn::EveryBlade, Any, "", "";
     }
 }

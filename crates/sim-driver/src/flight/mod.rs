@@ -6,14 +6,13 @@ pub use page::flight_html;
 
 use crate::SimError;
 use crate::actuator::case_actuators;
-use crate::case::{Case, FlightValues, LoadedCase, Notice};
+use crate::case::{Case, FailedOn, FlightValues, LoadedCase, Notice};
 use crate::output::{Printable, Sheet};
 use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
 use preisach_dyn::ActuatorModel;
-use report_page::Section;
 use rotor_flight::{
-    DrawnCase, FailureStudy, FlightError, FlownCase, FlownController, FlyingCase, MarginStudy,
+    DrawnCase, FailureStudy, FlightError, FlownCase, FlyingCase, MarginStudy, controllers_section,
     dissimilar_note, draws_section, failures_of_case, failures_section, margins_section,
 };
 use serde::Serialize;
@@ -157,8 +156,11 @@ fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
     }));
     notes.extend(values.failed_flap.map(|failed| {
         let told = if failed.notice == Notice::Told { "told" } else { "not told" };
+        let on = if failed.on == FailedOn::OneBlade { "one blade" } else { "every blade" };
         let (flap, at_s, stuck_deg) = (failed.flap, failed.at_s, failed.stuck_deg);
-        format!("Failure: flap {flap} stuck at {stuck_deg} deg from {at_s} s on; the controller is {told}.")
+        let kept = failed.kept_percent;
+        let left = if kept > 0.0 { format!(" with {kept} % of its motion") } else { String::new() };
+        format!("Failure: flap {flap} of {on} stuck at {stuck_deg} deg{left} from {at_s} s on; the controller is {told}.")
     }));
     let (noise, seed) = (values.noise_percent, values.seed);
     let told = if values.noise_notice == Notice::Told { "told to" } else { "estimated by" };
@@ -173,32 +175,6 @@ pub fn flight_csv(of: &FlightResult) -> String {
     rotor_flight::flight_csv(&of.flown, &of.harmonics, of.blades, of.units)
 }
 
-impl FlightResult {
-    /// The controllers beside each other.
-    fn summary(&self) -> Section {
-        let row = |own: &FlownController| {
-            let s = &own.summary;
-            vec![
-                own.controller.to_owned(),
-                format!("{:.3}", s.mean_cost_ratio),
-                format!("{:.2} at {:.1} s", s.worst_cost_ratio, s.worst_at_s),
-                format!("{:.3}", s.end_cost_ratio),
-                s.settles_in_s.map_or_else(|| "no".to_owned(), |time_s| format!("{time_s:.1} s")),
-                format!("{:.0} %", 100.0 * s.limited_share),
-                format!("{:.1} %", 100.0 * s.held_share),
-                format!("{:.2} W", s.power_watt),
-            ]
-        };
-        let header = ["T", "mean J/J0", "worst", "end", "settles in", "at limit", "held", "power"];
-        Section {
-            title: "Controllers".to_owned(),
-            text: "J0 is without control in the same state. Settles: from the last change until J/J0 stays within 0.05 of its end. At limit: cycles in which an amplitude is at its limit. Held: samples of the voltage at an end of the range. Power: of the actuators of one blade.".to_owned(),
-            header: header.map(str::to_owned).into(),
-            rows: self.flown.flights.iter().map(row).collect(),
-        }
-    }
-}
-
 impl Printable for FlightResult {
     fn text(&self) -> String {
         let mut sheet = Sheet::default();
@@ -206,7 +182,7 @@ impl Printable for FlightResult {
         for note in &self.notes {
             sheet.paragraphs(note);
         }
-        sheet.block(&self.summary().to_string());
+        sheet.block(&controllers_section(&self.flown).to_string());
         let drawn = self.drawn.as_ref().map(draws_section);
         let margins = self.margins.as_ref().map(margins_section);
         let failures = self.failures.as_ref().map(failures_section);

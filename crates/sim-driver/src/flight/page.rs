@@ -6,8 +6,8 @@ use maud::{Markup, html};
 use report_page::pictures::{Look, Panel, PointForm, Series, legend};
 use report_page::{Charts, page};
 use rotor_flight::{
-    FlightPoint, FlownController, draws_pictures, draws_section, failures_section, load_amplitudes,
-    margins_pictures, margins_section,
+    FlightPoint, FlownController, controllers_section, draws_pictures, draws_section,
+    failures_section, load_amplitudes, margins_pictures, margins_section,
 };
 use rotor_study::HubLoads;
 
@@ -56,6 +56,14 @@ impl FlightResult {
                     self.lines(&of, Some(&rest)),
                 ))
             }
+        }
+    }
+
+    /// What blades alike cancel, against time.
+    fn off_blade_number(&self) -> Markup {
+        html! {
+            (panel("J at 1/rev over J0", "J/J0", self.lines(&|p| p.once_per_rev_ratio, None)))
+            (panel("J at the other harmonics over J0", "J/J0", self.lines(&|p| p.other_ratio, None)))
         }
     }
 
@@ -121,6 +129,7 @@ pub fn flight_html(of: &FlightResult) -> String {
     let cost = of.lines(&|point| point.cost_ratio, Some(&|_| 1.0));
     let speed = vec![line("advance ratio", 1, first, &|point| point.advance_ratio)];
     let thrust = vec![line("thrust", 1, first, &|point| point.thrust_share)];
+    let is_unlike = first.iter().any(|point| point.other_ratio > 0.0);
     let steps = first.iter().any(|point| point.thrust_share > 0.0);
     let body = html! {
         header {
@@ -133,13 +142,14 @@ pub fn flight_html(of: &FlightResult) -> String {
                 ul { @for warning in &of.warnings { li { (warning) } } }
             }
         }
-        (of.summary())
+        (controllers_section(&of.flown))
         section {
             h2 { "J, loads, voltages" }
             p { "A point for each cycle, of the loads without noise." }
             (looks(&cost))
             div.grid {
                 (panel("J over J without control", "J/J0", cost))
+                @if is_unlike { (of.off_blade_number()) }
                 (panel("Speed", "advance ratio", speed))
                 @if steps { (panel("Part of the step of the thrust", "part", thrust)) }
                 (of.loads())

@@ -70,6 +70,34 @@ fn a_flight_is_told_drawn_and_tabled() {
     assert_eq!(place.read("b/flight.csv"), csv);
 }
 
+/// A flap that stands on one blade: what blades alike cancel is beside J in table, CSV, JSON and page.
+#[test]
+fn loads_off_the_blade_number_stand_beside_j() {
+    let place = flying(
+        "duration_s: 4, start_advance_ratio: 0.2, end_advance_ratio: 0.2, harmonics: [2, 3], noise_percent: 0,
+        noise_notice: Told, rate_weight: 1e-14, controllers: [Fixed, Adaptive],
+        failed_flap: (flap: 1, at_s: 2, stuck_deg: 1, on: OneBlade, notice: Untold)",
+    );
+    let said = place.hhc(&["fly", "case.ron"]).done();
+    for part in ["flap 1 of one blade stuck", "not told", "1/rev", "others", "told to the adaptive"]
+    {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!(said.lines().all(|line| line.chars().count() <= 100), "{said}");
+    let csv = place.read("out/case/flight.csv");
+    let rows = rows(&csv);
+    let number = |row: usize, name: &str| -> f64 { rows[row][name].parse().unwrap() };
+    let last = rows.len() / 2 - 1;
+    for name in ["once_per_rev_over_j0", "others_over_j0"] {
+        assert!(number(1, name) == 0.0 && number(last, name) > 1e-4, "{name}: {csv}");
+    }
+    let page = place.read("out/case/flight.html");
+    assert!(page.contains("J at 1/rev over J0") && page.contains("J at the other harmonics"));
+    let told = place.hhc(&["fly", "case.ron", "--format", "json"]).json();
+    let summary = &told["flown"]["flights"][0]["summary"];
+    assert!(summary["end_other_ratio"].as_f64().unwrap() > 1e-4, "{summary}");
+}
+
 #[test]
 fn margins_and_draws_are_tabled_and_drawn() {
     let place = flying(
@@ -174,6 +202,8 @@ fn flights_that_cannot_be_are_refused() {
         ("z0_walk_percent: 0", ["flight.z0_walk_percent", "expected 0.01 to 100"]),
         ("rate_weight: -1", ["flight.rate_weight", "expected 0 to"]),
         ("noise_notice: Loud", ["flight.noise_notice", "Loud"]),
+        ("failed_flap: (kept_percent: 101)", ["flight.failed_flap.kept_percent", "0 to 100 %"]),
+        ("failed_flap: (on: Two)", ["flight.failed_flap.on", "Two"]),
     ] {
         flying(flight).hhc(&["fly", "case.ron"]).rejected(&parts);
     }
