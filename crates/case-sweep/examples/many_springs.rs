@@ -6,7 +6,7 @@
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
 use case_sweep::{
-    Found, NoNumbers, ReadCase, Runner, Shard, Store, merge, plan, read_sweep_file, run,
+    Failed, Found, NoNumbers, ReadCase, Runner, Shard, Store, merge, plan, read_sweep_file, run,
 };
 use measured_data::problem::Problems;
 use measured_data::{Folder, Source, read_ron, ron_text};
@@ -63,7 +63,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let store = Store::new(folder.path());
     // as two machines would; none starts from what another found
     for part in ["1/2", "2/2"] {
-        run(&plan, Shard::parse(part)?, &store, &Springs, &|_| {})?;
+        run(&plan, (Shard::parse(part)?, Failed::Left), &store, &Springs, &|_| {})?;
     }
     print!("{}", merge(&plan, &store, false)?.csv());
     Ok(())

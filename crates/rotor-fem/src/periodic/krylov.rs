@@ -52,7 +52,7 @@ pub(crate) fn solve<E>(
         };
         let rest = (wanted - hessenberg * &found).norm();
         shares = found;
-        if rest <= ENOUGH * length || !(left > DEPENDENT * whole) {
+        if rest <= ENOUGH * length || left <= DEPENDENT * whole {
             break;
         }
         basis.push(next / left);

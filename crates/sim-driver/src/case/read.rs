@@ -184,7 +184,10 @@ pub fn load_case(path: &Path) -> Result<LoadedCase, Problems> {
 
 /// Whether a text says that it is an actuator file.
 pub(crate) fn is_actuator_file(source: &Source) -> bool {
-    source.text.lines().any(|line| line.trim().trim_end_matches(',') == "kind: Actuator")
+    let is_kind = |part: &str| {
+        part.trim().trim_matches(['(', ')']).split_whitespace().eq(["kind:", "Actuator"])
+    };
+    source.text.lines().any(|line| line.split(',').any(is_kind))
 }
 
 /// A case with the actuator of a file in the place of its own; paths are then relative to `folder`.
