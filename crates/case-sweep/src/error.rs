@@ -20,6 +20,11 @@ pub enum SweepError {
         /// What is wrong with a file now, behind a colon; nothing if all can be read.
         said: String,
     },
+    /// A thread ended by a fault of the program outside of a case.
+    #[error(
+        "a thread of the sweep ended by a fault of the program; results that are there stay: run again, and please report it"
+    )]
+    Ended,
     /// Results are missing, damaged, or of no case of the sweep.
     #[error("{}", .0.join("\n"))]
     Incomplete(Vec<String>),

@@ -51,8 +51,13 @@ impl Merged {
             self.known(name)?;
         }
         let axes: Vec<&String> = self.axes.iter().filter(|axis| spans(&cases, axis)).collect();
-        let x = choice.x.as_ref().or(axes.first().copied());
-        let y = choice.y.as_ref().or_else(|| axes.iter().copied().find(|own| Some(*own) != x));
+        if choice.x.is_some() && choice.x == choice.y {
+            let message = "--x and --y are the same; give two axes".to_owned();
+            return Err(SweepError::Choice(message));
+        }
+        let other = |than: Option<&String>| axes.iter().copied().find(|own| Some(*own) != than);
+        let x = choice.x.as_ref().or_else(|| other(choice.y.as_ref()));
+        let y = choice.y.as_ref().or_else(|| other(x));
         let mut charts = Charts::default();
         let body = html! {
             h1 { (title) }
@@ -97,7 +102,11 @@ impl Merged {
                     format!("--at {wanted}: expected FIELD=VALUE, such as advance_ratio=0.2");
                 return Err(SweepError::Choice(message));
             };
-            self.known(field)?;
+            if !self.axes.iter().any(|own| own == field) {
+                let axes = self.axes.join(", ");
+                let message = format!("--at {wanted}: {field} is no axis of the sweep ({axes})");
+                return Err(SweepError::Choice(message));
+            }
             cases.retain(|case| {
                 let cell = case.values.iter().find(|(own, _)| own == field).map(|(_, cell)| cell);
                 match (cell, value.parse::<f64>()) {
@@ -154,7 +163,10 @@ impl Merged {
         cases: &[&MergedCase],
         names: impl Iterator<Item = &'a String>,
     ) -> Markup {
-        let names: Vec<&String> = names.collect();
+        // a column of some cases alone, as of one set of harmonics, would leave no line of the others
+        let has = |case: &&MergedCase, name: &str| Self::number(case, name).is_some();
+        let names: Vec<&String> =
+            names.filter(|name| cases.iter().all(|case| has(case, name))).collect();
         let row = |case: &&MergedCase| -> Option<Vec<f64>> {
             names.iter().map(|name| Self::number(case, name)).collect()
         };
@@ -164,7 +176,7 @@ impl Merged {
         charts.figure(
             "chart tall",
             "Parallel coordinates",
-            "Drag along an axis to choose cases.",
+            "Drag along an axis to choose cases. Only what every case has is shown.",
             &parallel_chart(columns.collect()),
         )
     }
@@ -293,5 +305,30 @@ mod tests {
         assert!(page(&at("b")).unwrap_err().contains("FIELD=VALUE"));
         assert!(page(&at("b=7")).unwrap_err().contains("no case with numbers"));
         assert!(page(&at("m=X")).is_ok());
+        assert!(page(&at("ideal_actuation_power_W=1")).unwrap_err().contains("is no axis"));
+        // an axis upwards leaves the other one to the right
+        let axes = |x: Option<&str>, y: &str| PageChoice {
+            x: x.map(str::to_owned),
+            y: Some(y.to_owned()),
+            ..PageChoice::default()
+        };
+        assert!(page(&axes(None, "a")).unwrap().contains("Lines of one b and of one a [kg]"));
+        assert!(page(&axes(Some("a"), "a")).unwrap_err().contains("are the same"));
+    }
+
+    /// A column that some cases lack takes no line from the others.
+    #[test]
+    fn the_lines_are_of_what_every_case_has() {
+        let lines = |merged: &Merged| -> usize {
+            let page = merged.page("S", &PageChoice::default()).unwrap();
+            let values = page.split("parcoords").nth(1).unwrap().split("\"values\":[").nth(1);
+            values.unwrap().split(']').next().unwrap().split(',').filter(|v| !v.is_empty()).count()
+        };
+        let whole = merged();
+        assert_eq!(lines(&whole), 6);
+        let mut some = whole.clone();
+        some.columns.push("other_reduction_percent".into());
+        some.cases[0].found.push(("other_reduction_percent".into(), 1.0.into()));
+        assert_eq!(lines(&some), 6);
     }
 }

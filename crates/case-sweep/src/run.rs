@@ -96,9 +96,9 @@ pub fn run<R: Runner>(
     let workers = threads.min(open.len()).max(1);
     let (next, computed) = (AtomicUsize::new(0), Mutex::new(0_usize));
     let failed = Mutex::new(Vec::new());
-    let work = || -> Result<(), SweepError> {
+    let work = |own: usize| -> Result<(), SweepError> {
         // threads of its own: a case that waits for its parts takes up no other case meanwhile
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads / workers).build();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(own).build();
         loop {
             let Some(case) = open.get(next.fetch_add(1, Ordering::Relaxed)) else { return Ok(()) };
             let one = || run_case(plan, case, runner);
@@ -116,8 +116,11 @@ pub fn run<R: Runner>(
         }
     };
     let ends: Vec<Result<(), SweepError>> = std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().filter_map(|worker| worker.join().ok()).collect()
+        let share = |worker: usize| threads / workers + usize::from(worker < threads % workers);
+        let work = &work;
+        let workers: Vec<_> =
+            (0..workers).map(|worker| scope.spawn(move || work(share(worker)))).collect();
+        workers.into_iter().map(|worker| worker.join().unwrap_or(Err(SweepError::Ended))).collect()
     });
     ends.into_iter().collect::<Result<(), SweepError>>()?;
     ran.computed = *lock(&computed);

@@ -93,6 +93,14 @@ impl RonIndex {
         Some(format!("{before}{name}: {value}, {after}"))
     }
 
+    /// The text without a field; none if it has no such field.
+    pub fn without(&self, path: &str) -> Option<String> {
+        let entry = self.entry(path)?;
+        let (before, after) = (self.text.get(..entry.start)?, self.text.get(entry.value.end..)?);
+        let after = after.trim_start();
+        Some(format!("{before}{}", after.strip_prefix(',').unwrap_or(after)))
+    }
+
     /// Gives a field, and all inside it, another path.
     pub fn rename(&mut self, before: &str, now: &str) {
         for entry in &mut self.entries {
@@ -327,6 +335,16 @@ mod tests {
         for path in ["b.c[2]", "a.n", "", "b."] {
             assert_eq!(set(path, "4"), None, "{path}");
         }
+    }
+
+    #[test]
+    fn a_field_goes_with_its_comma() {
+        let without = |text: &str, path| RonIndex::new("a", text).without(path);
+        let text = "(a: 1, b: (c: [2, 3], d: 4), e: 5)";
+        assert_eq!(without(text, "b.c").as_deref(), Some("(a: 1, b: ( d: 4), e: 5)"));
+        assert_eq!(without(text, "b").as_deref(), Some("(a: 1,  e: 5)"));
+        assert_eq!(without(text, "e").as_deref(), Some("(a: 1, b: (c: [2, 3], d: 4), )"));
+        assert_eq!(without(text, "f"), None);
     }
 
     #[test]

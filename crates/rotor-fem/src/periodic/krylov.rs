@@ -46,7 +46,7 @@ pub(crate) fn solve<E>(
             DMatrix::from_fn(n + 1, n, |i, j| columns[j].get(i).copied().unwrap_or(0.0));
         let mut wanted = DVector::zeros(n + 1);
         wanted[0] = length;
-        // the least squares of a matrix of full rank; of another one the directions before serve
+        // an error only without the factors that are asked for above
         let Ok(found) = hessenberg.clone().svd(true, true).solve(&wanted, f64::EPSILON) else {
             break;
         };

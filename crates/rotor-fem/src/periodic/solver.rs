@@ -24,7 +24,7 @@ const MAX_HALVINGS: i32 = 6;
 pub struct PeriodicSettings {
     /// Bound on the residual norm, in generalised force (rotor units).
     pub tolerance: f64,
-    /// Largest number of residual evaluations beyond the first.
+    /// Largest number of steps; one of a careful search costs up to thirty evaluations of the residual.
     pub max_iterations: usize,
     /// The kept factorisation is renewed when a step leaves more than this fraction of the residual.
     pub refresh_contraction: f64,

@@ -88,7 +88,7 @@ impl Agreement {
         let inflow_off_percent = 100.0 * (inflow.mean / periodic.1 - 1.0).abs();
         let inflow_half = 100.0 * (inflow.half_width_95 / periodic.1).abs();
         let within = |off: f64, half: f64| {
-            if off <= AGREES_PERCENT {
+            if off + half <= AGREES_PERCENT {
                 Verdict::Agrees
             } else if off - half > AGREES_PERCENT {
                 Verdict::Differs
@@ -350,8 +350,10 @@ mod tests {
         };
         let calm = of(0.0201, 0.0);
         // 0.8 % of the length 5, and 2 % of it
-        let (said, off) = verdict([of(3.04, 0.01), of(4.0, 0.01)], calm);
+        let (said, off) = verdict([of(3.04, 0.001), of(4.0, 0.001)], calm);
         assert!(said == Verdict::Agrees && (off - 0.8).abs() < 1e-9, "{said:?} {off}");
+        // near, but an interval that reaches far is no agreement
+        assert_eq!(verdict([of(3.04, 0.01), of(4.0, 0.01)], calm).0, Verdict::Open);
         assert_eq!(verdict([of(3.1, 0.01), of(4.0, 0.01)], calm).0, Verdict::Differs);
         assert_eq!(verdict([of(3.1, 0.1), of(4.0, 0.1)], calm).0, Verdict::Open);
         assert_eq!(verdict([of(3.0, 0.0), of(4.0, 0.0)], of(0.021, 0.0)).0, Verdict::Differs);

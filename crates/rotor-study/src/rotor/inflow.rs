@@ -101,7 +101,7 @@ pub fn settled_trim(
 }
 
 /// What may help a wake that does not settle.
-const WAKE_REMEDY: &str = "Remedy: `mutual_core_r` of 0.1, `near_core_r` of 0.1, fewer `turns`, more `updates` if all were used, or means in time, `hhc wake CASE.ron --in-time`";
+const WAKE_REMEDY: &str = "Remedy: means in time, `hhc wake CASE.ron --in-time`; more `updates` if all were used; `mutual_core_r` or `near_core_r` of 0.1, which is another wake";
 /// The same at low speed, where wider cores do not help.
 const SLOW_WAKE_REMEDY: &str = "Remedy: at this speed there may be no periodic wake; `hhc wake CASE.ron --in-time` has the means of one in time";
 /// Advance ratio below which a speed is low.

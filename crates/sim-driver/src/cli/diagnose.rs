@@ -1,7 +1,7 @@
 //! `hhc diagnose` and `hhc ladder`.
 
 use super::args::{DiagnoseArgs, LadderArgs, RecordsArgs};
-use super::{case_or_paper, overridden, warn, write_texts};
+use super::{case_or_paper, overridden, say, warn, write_texts};
 use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
@@ -42,9 +42,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     }
     let names = specimen_names(&args.data)?;
     if args.records.reference.is_some() {
-        eprintln!(
+        say(&format_args!(
             "warning: one --reference for several specimens: how they differ from each other is found as a cause"
-        );
+        ));
     }
     let mut found = Vec::new();
     for (name, data) in names.into_iter().zip(&args.data) {
@@ -73,7 +73,7 @@ fn of_points(
     let found = found?;
     write_texts(output, found.files()?)?;
     for note in &found.diagnosis.notes {
-        eprintln!("{note}");
+        say(&format_args!("{note}"));
     }
     print(&PointStory::of(&found.diagnosis).render(form)?)
 }
@@ -241,10 +241,10 @@ fn write_extended_case(case: &LoadedCase, output: &Path) -> Result<(), SimError>
     let extended = output.join(EXTENDED_FILE);
     let folder = Folder::of_file(&extended);
     let Ok(own) = with_actuator_file(case, &extended, &folder) else {
-        eprintln!(
+        say(&format_args!(
             "warning: no {EXTENDED_CASE_FILE}: the case names files beside it; name {} as its actuator",
             extended.display()
-        );
+        ));
         return Ok(());
     };
     let path = output.join(EXTENDED_CASE_FILE);

@@ -1,5 +1,6 @@
 //! What is computed of a case beside it, and what its run leaves behind.
 
+use super::say;
 use crate::SimError;
 use crate::case::LoadedCase;
 use crate::files::write_atomic;
@@ -135,7 +136,7 @@ fn write_or_remove(path: &Path, text: Option<String>) -> Result<(), SimError> {
 /// Says of a run that failed that the results in its folder are not its own.
 pub(super) fn note_earlier(out: &Path) {
     if out.join(RESULT_FILE).is_file() {
-        eprintln!("note: the results in {} are of an earlier run", out.display());
+        say(&format_args!("note: the results in {} are of an earlier run", out.display()));
     }
 }
 

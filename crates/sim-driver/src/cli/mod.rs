@@ -30,6 +30,7 @@ use crate::progress::{is_quiet, set_quiet};
 use crate::sweep::at_advance_ratio;
 use clap::Parser;
 use std::fmt::Display;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -39,7 +40,7 @@ use std::process::ExitCode;
 /// comparison failed. A panic never reaches the user as such.
 pub fn main() -> ExitCode {
     std::panic::set_hook(Box::new(|info| {
-        eprintln!("{}", bug_message(&info.to_string()));
+        say(&bug_message(&info.to_string()));
     }));
     let cli = Cli::parse();
     // within the threads of the pool a parallel step needs no change of thread
@@ -47,12 +48,17 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {
-            eprintln!("{error}");
+            say(&error);
             ExitCode::from(error.exit_code())
         }
         // the hook has printed what happened
         Err(_) => ExitCode::from(1),
     }
+}
+
+/// Says something on standard error; one that takes no more, such as a log on a full disk, is no fault of the run.
+pub(super) fn say(what: &dyn Display) {
+    let _ = writeln!(std::io::stderr(), "{what}");
 }
 
 fn bug_message(panic: &str) -> String {
@@ -98,7 +104,10 @@ fn warn<T: Display>(warnings: &[T], format: Format) {
     if is_quiet() {
         return;
     }
-    eprint!("{}", warnings_text(warnings, format, "in the report, or with --details"));
+    let text = warnings_text(warnings, format, "in the report, or with --details");
+    if !text.is_empty() {
+        say(&text.trim_end());
+    }
 }
 
 /// Whether the rotor can fly at an advance ratio of the command line.

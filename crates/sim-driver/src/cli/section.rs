@@ -1,6 +1,7 @@
 //! `hhc section`: from options to questions about a section.
 
 use super::args::{ResponseArg, SectionArgs};
+use super::say;
 use crate::SimError;
 use crate::case::DynamicStallChoice;
 use crate::files::{refuse_input, write_atomic};
@@ -66,7 +67,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
 fn write_csv(args: &SectionArgs, csv: &str, remarks: &[String]) -> Result<(), SimError> {
     let Some(path) = &args.output else { return Ok(()) };
     for remark in remarks {
-        eprintln!("note: {remark}");
+        say(&format_args!("note: {remark}"));
     }
     Ok(write_atomic(path, csv.as_bytes())?)
 }

@@ -1,10 +1,10 @@
 //! `hhc sweep`: many variations of a case, on one machine or as a Slurm array.
 
 use super::case_runner::CaseRunner;
-use super::write_texts;
+use super::{say, write_texts};
 use crate::SimError;
 use crate::case::load_case;
-use crate::files::{Folder, Source, missing_file, refuse_unwritable};
+use crate::files::{Folder, RonIndex, Source, missing_file, refuse_unwritable};
 use crate::output::{Format, json, print, table};
 use crate::problem::Problem;
 use crate::progress::{Progress, is_quiet};
@@ -95,6 +95,9 @@ impl PageArgs {
     }
 }
 
+/// Field of a case whose default depends on another one.
+const ACTUATORS: &str = "control.actuators";
+
 /// Name of the file of merged results.
 const MERGED_FILE: &str = "sweep.json";
 
@@ -129,7 +132,9 @@ pub(super) fn sweep(action: &SweepAction) -> Result<(), SimError> {
             run_part(&Sweep::of(sweep)?, (part, failed), sweep.format)
         }
         SweepAction::Status(args) => show_status(&Sweep::of(args)?, args.format),
-        SweepAction::Merge { sweep, partial } => write_merged(&Sweep::of(sweep)?, *partial),
+        SweepAction::Merge { sweep, partial } => {
+            write_merged(&Sweep::of(sweep)?, *partial, sweep.format)
+        }
         SweepAction::Report { sweep, page } => write_page(sweep, &page.choice()),
         SweepAction::Slurm { sweep, tasks, cpus } => print_script(sweep, *tasks, *cpus),
     }
@@ -152,7 +157,12 @@ impl Sweep {
         }
         let base = load_case(Path::new(&folder.display(&file.base)))?;
         let runner = CaseRunner::new(base.folder.clone());
-        let plan = plan(&file, CaseRunner::canonical(&base)?, &runner)?;
+        let mut text = CaseRunner::canonical(&base)?;
+        // what follows from the model of the actuator, unless the case states it, follows from that of an axis
+        if !base.index.contains(ACTUATORS) {
+            text = RonIndex::new("case", &text).without(ACTUATORS).unwrap_or(text);
+        }
+        let plan = plan(&file, text, &runner)?;
         let out = args.out();
         Ok(Self { plan, runner, store: Store::new(&out), out })
     }
@@ -215,7 +225,7 @@ pub(super) fn run_shown<R: Runner>(
         progress.doing(pace.to_string());
         let mut logged = logged.lock().unwrap_or_else(PoisonError::into_inner);
         if is_log && !is_quiet() && logged.elapsed() > LOG_EVERY {
-            eprintln!("{pace}");
+            say(&pace);
             *logged = Instant::now();
         }
     };
@@ -268,9 +278,12 @@ fn show_status(sweep: &Sweep, format: Format) -> Result<(), SimError> {
     ))
 }
 
-fn write_merged(sweep: &Sweep, partial: bool) -> Result<(), SimError> {
+fn write_merged(sweep: &Sweep, partial: bool, format: Format) -> Result<(), SimError> {
     let merged = merge(&sweep.plan, &sweep.store, partial)?;
     write_texts(&sweep.out, merged_files(&merged)?)?;
+    if format == Format::Json {
+        return print(&json(&merged)?);
+    }
     let failed = merged.cases.iter().filter_map(|case| Some((&case.key, case.failed.as_ref()?)));
     let failed: Vec<(&String, &String)> = failed.collect();
     print(&format!(

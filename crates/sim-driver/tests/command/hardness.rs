@@ -83,6 +83,9 @@ fn a_full_disk_is_told_and_leaves_nothing_half_there() {
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("standard output") && !said.contains("panicked"), "{said}");
+    // a log on a full disk changes nothing
+    let output = shell(&place, "exec \"$0\" \"$@\" 2>/dev/full", &["modes", "none.ron"]);
+    assert_eq!(output.status.code(), Some(2));
     for args in
         [["run", "case.ron", "--out", "/proc/study"], ["run", "case.ron", "--out", "/dev/null/x"]]
     {

@@ -28,7 +28,9 @@ fn any_parts_merge_to_the_same_bytes() {
     let said = place.hhc(&["sweep", "run", "sweep.ron", "--out", "a"]).done();
     assert!(said.contains("8 cases: 0 were there, 8 computed; 2 failed"), "{said}");
     assert!(said.contains("flaps[1].end_r"), "the reason is told: {said}");
-    place.hhc(&["sweep", "merge", "sweep.ron", "--out", "a"]).done();
+    let merged =
+        place.hhc(&["sweep", "merge", "sweep.ron", "--out", "a", "--format", "json"]).json();
+    assert_eq!(merged["cases"].as_array().map(Vec::len), Some(8));
     for (shard, threads) in [("2/3", "1"), ("3/3", "2"), ("1/3", "4")] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_hhc"));
         command.args(["sweep", "run", "sweep.ron", "--out", "b", "--shard", shard]);
@@ -142,6 +144,31 @@ fn keys_follow_the_files_that_a_case_names() {
     assert_ne!(with_table, base);
     place.write("foil.c81", &table.replacen('\n', " \n", 1));
     assert_ne!(key(), with_table);
+}
+
+/// What a case computes follows from its actuator; an axis of actuators is not bound to what follows from that of the base.
+#[test]
+fn an_axis_of_actuators_brings_what_follows_from_them() {
+    let keys = |case: &str, axis: &str| -> Vec<String> {
+        let place = swept(&format!("(base: \"case.ron\", axes: [{axis}])"));
+        place.write("case.ron", case);
+        let plan = place.hhc(&["sweep", "plan", "sweep.ron", "--format", "json"]).json();
+        let cases = plan["cases"].as_array().unwrap().clone();
+        assert!(cases.iter().all(|case| case["refused"].is_null()), "{cases:?}");
+        cases.iter().map(|case| case["key"].as_str().unwrap().to_owned()).collect()
+    };
+    let bench = "Bench(dataset: \"shipped:apa500l_synthetic\")";
+    let of = |model: &str| {
+        let case = QUICK_CASE.replace(", actuators: [Ideal]", "");
+        case.replace("model: Ideal", &format!("model: {model}"))
+    };
+    let axis = format!("(field: \"actuator.model\", values: [Ideal, {bench}])");
+    let one = "(field: \"advance_ratio\", values: [0.2])";
+    let alone = [keys(&of("Ideal"), one), keys(&of(bench), one)].concat();
+    assert_ne!(alone[0], alone[1]);
+    for base in ["Ideal", bench] {
+        assert_eq!(keys(&of(base), &axis), alone, "{base}");
+    }
 }
 
 /// Whatever the moment of a kill, whole results stay, and the next run computes what is missing and no more.
