@@ -53,12 +53,14 @@ fn the_means_at_low_speed_do_not_know_how_the_march_began() {
     assert!(a.balanced && b.balanced, "{:?} {:?}", a.residuals, b.residuals);
     let (inflows, collectives) =
         ([&a.mean_inflow, &b.mean_inflow], [&a.asked_for[0], &b.asked_for[0]]);
-    for (i, (a, b)) in a.at_blade_number.iter().zip(&b.at_blade_number).enumerate() {
-        println!("at nb {i}: {a:?} {b:?}");
+    // 18 comparisons of 95 % each, none of which is a free draw: the loads of a revolution move together
+    let of_a = a.at_blade_number.iter().chain(&a.amplitudes);
+    for (a, b) in of_a.zip(b.at_blade_number.iter().chain(&b.amplitudes)) {
+        assert!((a.mean - b.mean).abs() < interval(a, b), "{a:?} {b:?}");
     }
-    for (i, (a, b)) in a.amplitudes.iter().zip(&b.amplitudes).enumerate() {
-        println!("amp {i}: {a:?} {b:?}");
-    }
+    // the vertical force, which the wake shakes most, is known to a third
+    let [a_z, b_z] = [&a.amplitudes[2], &b.amplitudes[2]];
+    assert!(interval(a_z, b_z) < 0.35 * a_z.mean, "{a_z:?} {b_z:?}");
     for [a, b] in [inflows, collectives] {
         let (off, most) = ((a.mean - b.mean).abs(), interval(a, b));
         assert!(off < most && most < 0.05 * a.mean, "{a:?} {b:?}");
