@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use bench_study::stored::{StoredActuator, read_actuator};
-use case_sweep::{StoredCase, read_sweep_file};
+use case_sweep::{Merged, StoredCase, read_sweep_file};
 use rotor_gap::read_table;
 use sim_driver::actuator_use::used;
 use sim_driver::case::{load_case, read_case};
@@ -125,6 +125,7 @@ fn of_texts(root: &Path) -> Result<Vec<Target>, XtaskError> {
     let earlier = root.join("crates/sim-driver/tests/data/earlier_result/result.json");
     let sweep = b"(base: \"c.ron\", axes: [(field: \"a.b[0]\", values: [1, X(y: 2), [3]]), (field: \"x\", from: 1, to: 2, count: 3)], sampling: LatinHypercube(count: 9, seed: 1))";
     let stored = b"\"version\":\"1\",\"inputs\":[\"a\"],\"case\":\"(x: 1)\",\"outcome\":{\"found\":{\"columns\":[[\"a_deg\",1.5e-3],[\"b\",\"w\"],[\"c\",null]],\"warnings\":[]}}}\n";
+    let merged = b"{\"axes\":[\"rotor.gj\",\"model\"],\"axis_units\":[\"m0\",\"\"],\"columns\":[\"a_deg\",\"b\"],\"cases\":[{\"case\":1,\"key\":\"0f\",\"values\":{\"rotor.gj\":0.005,\"model\":\"X\"},\"found\":{\"a_deg\":1.5e-3,\"b\":null},\"warnings\":[\"w\"]},{\"case\":2,\"key\":\"1f\",\"values\":{\"rotor.gj\":0.006,\"model\":\"X\"},\"failed\":\"why\",\"found\":{},\"warnings\":[]}]}";
     Ok(vec![
         Target {
             reader: "case",
@@ -158,6 +159,12 @@ fn of_texts(root: &Path) -> Result<Vec<Target>, XtaskError> {
                 let hash = blake3::hash(object.as_bytes()).to_hex();
                 StoredCase::of(&format!("{{\"hash\":\"{hash}\",{rest}"), &key).is_some()
             }),
+        },
+        Target {
+            reader: "merged sweep",
+            form: Form::Nested,
+            valid: vec![merged.to_vec()],
+            read: Box::new(|bytes| serde_json::from_slice::<Merged>(bytes).is_ok()),
         },
         Target {
             reader: "result",
@@ -286,6 +293,9 @@ fn of_folders(root: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
     Ok(targets)
 }
 
+/// Arrays that say themselves what they are.
+const HDF5: &str = "import HDF5";
+
 /// The importers, with what instruments and programs write.
 fn of_imports(fixtures: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> {
     let of_ending = |endings: &[&str]| -> Result<Vec<Vec<u8>>, XtaskError> {
@@ -298,21 +308,23 @@ fn of_imports(fixtures: &Path, place: &Path) -> Result<Vec<Target>, XtaskError> 
     };
     let mat =
         [vec![bytes_of(&fixtures.join("mat/bench_struct.mat"))?], of_ending(&["mat"])?].concat();
+    let hdf5 = vec![bytes_of(&fixtures.join("instruments/hdf5_units.h5"))?];
     let record = vec![bytes_of(&fixtures.join("bench/apa500l_synthetic").join(RECORD))?];
     let mut targets = Vec::new();
     for (reader, form, source, valid) in [
         ("import CSV", Form::Table, SourceKind::Csv, [record, of_ending(&["csv"])?].concat()),
         ("import text", Form::Table, SourceKind::Csv, of_ending(&["txt", "asc", "lvm", "dat"])?),
         ("import gzip", Form::Gzip, SourceKind::Csv, of_ending(&["gz"])?),
-        ("import others", Form::Binary, SourceKind::Csv, of_ending(&["npy", "h5", "json"])?),
+        ("import others", Form::Binary, SourceKind::Csv, of_ending(&["npy", "json"])?),
         ("import workbook", Form::Zip, SourceKind::Csv, of_ending(&["xlsx"])?),
         ("import TDMS", Form::Binary, SourceKind::Tdms, of_ending(&["tdms"])?),
         ("import MAT", Form::Mat, SourceKind::Mat, mat),
+        (HDF5, Form::Binary, SourceKind::Mat, hdf5),
         ("import FORC", Form::Table, SourceKind::MicromagForc, vec![FORC.into()]),
     ] {
         let file = place.join(reader.replace(' ', "_"));
         let out = place.join(format!("{}_out", reader.replace(' ', "_")));
-        let request = request(&file, &out, source);
+        let request = request(&file, &out, (source, reader != HDF5));
         targets.push(Target {
             reader,
             form,
@@ -349,8 +361,8 @@ fn copy(from: &Path, to: &Path, own: &str) -> Result<(), XtaskError> {
     Ok(())
 }
 
-fn request(file: &Path, out: &Path, source: SourceKind) -> ImportRequest {
-    let is_mat = source == SourceKind::Mat;
+fn request(file: &Path, out: &Path, (source, is_named): (SourceKind, bool)) -> ImportRequest {
+    let is_mat = source == SourceKind::Mat && is_named;
     ImportRequest {
         files: vec![file.to_path_buf()],
         out: out.to_path_buf(),
