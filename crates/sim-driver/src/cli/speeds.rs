@@ -58,7 +58,7 @@ pub(super) fn run_speeds(
             kept.forget(&case.key)?;
         }
     }
-    let ran = run_shown(&planned, (Shard::WHOLE, Failed::Again), &kept, &runner)?;
+    let ran = run_shown(&planned, (Shard::WHOLE, Failed::Left), &kept, &runner)?;
     let (mut rows, mut failed) = (Vec::new(), Vec::new());
     for (mu, case) in cases() {
         if let Some(result) = runner.whole(mu) {
