@@ -90,6 +90,27 @@ pub enum ExportError {
         /// Its value.
         value: f64,
     },
+    /// A memory of a monitor beside which a sample has no weight.
+    #[error(
+        "the memory of the monitor is {memory_s} s, expected at most {largest_s} s at this time step: a sample would have no weight; \
+         give it some periods of the command, such as 1 s"
+    )]
+    Memory {
+        /// The memory refused, s.
+        memory_s: f64,
+        /// The longest one, s.
+        largest_s: f64,
+    },
+    /// A monitor of an actuator with stages of a sensor, which step functions leave out.
+    #[error(
+        "the actuator has stages of a sensor ({stages}), through which its records were measured and which a monitor does not \
+         simulate: what they add would be taken for a change of the actuator; watch with a sensor without them and take \
+         `sensor` out of the actuator file"
+    )]
+    Sensor {
+        /// Their names.
+        stages: String,
+    },
     /// A monitor in a language it is not written in.
     #[error("a monitor is written in C, Python or JSON; give one of them with --to")]
     MonitorTarget,

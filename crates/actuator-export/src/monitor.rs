@@ -5,7 +5,7 @@
 //! amount = <r e> / <e e>                            0 none, 1 as diagnosed
 //! residual^2 = <r r>,   left^2 = <r r> - amount <r e>
 //! < >: mean with weights that fall as exp(-age / memory)
-//! sound: residual <= threshold;   the cause: left <= threshold < residual;   something else: both beyond
+//! sound: residual <= threshold;   the cause: left <= threshold < residual, amount > 0;   something else: all others
 //! ```
 
 use crate::constant::number;
@@ -36,9 +36,9 @@ pub struct Monitor<'a> {
 pub enum Seen {
     /// The residual is within the threshold.
     Sound,
-    /// It is beyond, and within once the amount of the cause is taken off.
+    /// It is beyond, and within once the amount of the cause, above 0, is taken off.
     Cause,
-    /// It is beyond, with the cause taken off too.
+    /// It is beyond, with the cause taken off too, or the amount is 0 or below: what is seen is its contrary.
     Other,
 }
 
@@ -55,9 +55,13 @@ pub struct Watched {
     pub seen: Seen,
 }
 
+/// Longest memory, in time steps: beyond it a sample has hardly any weight beside the rounding of the sums.
+const LONGEST_MEMORY: f64 = 1e12;
+
 const MEANING: &str = "A sample of the voltage and of the measured flap angle at a time. The residual is what was measured less \
      the actuator as it was; the signature is what the cause adds. The amount of the cause is the share of the signature that \
-     explains the residual. The residual itself is said to be due to it where what is left is within the threshold.";
+     explains the residual. The residual itself is said to be due to it where what is left is within the threshold and \
+     the amount is above 0.";
 
 impl Monitor<'_> {
     /// What is seen after each sample but the first, at which the actuator rests. Measurements that are not finite are left
@@ -96,7 +100,7 @@ impl Monitor<'_> {
         let left_deg = ((rr - amount * re).max(0.0) / weight).sqrt();
         let seen = match () {
             () if residual_deg <= self.threshold_deg => Seen::Sound,
-            () if left_deg <= self.threshold_deg => Seen::Cause,
+            () if left_deg <= self.threshold_deg && amount > 0.0 => Seen::Cause,
             () => Seen::Other,
         };
         Watched { residual_deg, amount, left_deg, seen }
@@ -106,13 +110,24 @@ impl Monitor<'_> {
         (-time_step_s / self.memory_s).exp()
     }
 
-    fn check(&self) -> Result<(), ExportError> {
+    fn check(&self, time_step_s: f64) -> Result<(), ExportError> {
         for (what, value) in [("threshold", self.threshold_deg), ("memory", self.memory_s)] {
             if !(value.is_finite() && value > 0.0) {
                 return Err(ExportError::NotPositive { what, value });
             }
         }
+        // an invalid time step is refused with the step functions
+        if time_step_s > 0.0 && self.memory_s > LONGEST_MEMORY * time_step_s {
+            let (memory_s, largest_s) = (self.memory_s, LONGEST_MEMORY * time_step_s);
+            return Err(ExportError::Memory { memory_s, largest_s });
+        }
         let (a, b) = (self.base, self.extended);
+        let sensors = [a, b].into_iter().flat_map(|model| &model.sensor);
+        let mut kinds: Vec<String> = sensors.map(kind_of).collect();
+        kinds.dedup();
+        if !kinds.is_empty() {
+            return Err(ExportError::Sensor { stages: kinds.join(", ") });
+        }
         if a.law == b.law && a.amplifier == b.amplifier && a.linkage == b.linkage {
             return Err(ExportError::NoCause);
         }
@@ -150,14 +165,15 @@ fn kind_of(stage: &impl std::fmt::Debug) -> String {
 /// The files of a monitor, name and text of each: `NAME` with `NAME_base` and `NAME_extended`, or one JSON.
 ///
 /// # Errors
-/// Those of [`crate::export`]; a threshold or a memory that is not positive, two actuators that move alike, MATLAB.
+/// Those of [`crate::export`]; a threshold or a memory that is not positive, a memory too long for the time step, a sensor
+/// stage, two actuators that move alike, MATLAB.
 pub fn export_monitor(
     monitor: &Monitor<'_>,
     name: &str,
     time_step_s: f64,
     target: Target,
 ) -> Result<Vec<(String, String)>, ExportError> {
-    monitor.check()?;
+    monitor.check(time_step_s)?;
     name::check(name)?;
     let names = ["base", "extended"].map(|part| format!("{name}_{part}"));
     let models = [monitor.base, monitor.extended];
@@ -201,7 +217,7 @@ impl Monitor<'_> {
             "r = measured - base,   e = extended - base",
             "every mean: m <- kept m + (1 - kept) product, divided by the weight w <- kept w + (1 - kept)",
             "amount = <r e> / <e e>,   residual^2 = <r r>,   left^2 = <r r> - amount <r e>",
-            "sound: residual <= threshold; the cause: left <= threshold < residual; something else: both beyond",
+            "sound: residual <= threshold; the cause: left <= threshold < residual and amount > 0; something else: all others",
         ];
         Json::Record(vec![
             ("name", Json::text(name)),

@@ -41,9 +41,16 @@ fn falls(glance: &Glance) -> bool {
     glance.findings.iter().any(|finding| matches!(finding, Finding::OutputFalls { .. }))
 }
 
+/// The frequency up to which records are far from any mode, Hz: behind one the output may lag by half a period.
+fn highest_alike_hz(glances: &[Glance]) -> f64 {
+    LIKE * glances.iter().filter_map(|glance| glance.frequency_hz).fold(f64::MAX, f64::min)
+}
+
 fn of_sign(glances: &[Glance]) -> Option<String> {
+    let highest_hz = highest_alike_hz(glances);
+    let is_slow = |glance: &&Glance| glance.frequency_hz.is_none_or(|hz| hz <= highest_hz);
     let ids = |is: &dyn Fn(&&Glance) -> bool| -> Vec<&str> {
-        glances.iter().filter(is).map(|glance| glance.id.as_str()).collect()
+        glances.iter().filter(is_slow).filter(is).map(|glance| glance.id.as_str()).collect()
     };
     let falling = ids(&|glance| falls(glance));
     let rising = ids(&|glance| !falls(glance) && glance.slope.is_some_and(|slope| slope > 0.0));
@@ -65,11 +72,10 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
 
 fn of_gain(glances: &[Glance], subject: Subject<'_>) -> Vec<String> {
     let [input, output] = subject.units();
-    let lowest_hz =
-        glances.iter().filter_map(|glance| glance.frequency_hz).fold(f64::MAX, f64::min);
+    let highest_hz = highest_alike_hz(glances);
     let size = |glance: &Glance| {
         let slope = glance.slope.filter(|slope| slope.is_finite() && slope.abs() > 0.0)?;
-        (glance.frequency_hz? <= LIKE * lowest_hz).then_some(slope.abs())
+        (glance.frequency_hz? <= highest_hz).then_some(slope.abs())
     };
     let own: Vec<(&Glance, f64)> = glances.iter().filter_map(|g| Some((g, size(g)?))).collect();
     // of two nobody knows which one is right: the first is held against the second
@@ -165,8 +171,10 @@ mod tests {
         ];
         assert_eq!(said(&all), "");
         // a mode may do anything
-        let fast = Glance { frequency_hz: Some(20.0), ..seen("d", 20.0, |u| 20.0 * u) };
-        assert_eq!(said(&[&all[..], &[fast]].concat()), "");
+        for gain in [20.0, -2.0] {
+            let fast = Glance { frequency_hz: Some(20.0), ..seen("d", 20.0, |u| gain * u) };
+            assert_eq!(said(&[&all[..], &[fast]].concat()), "");
+        }
         // all of them inverted: each says it by itself
         let all = [seen("a", 60.0, |u| -2.0 * u), seen("b", 20.0, |u| -1.9 * u)];
         assert_eq!(said(&all), "");

@@ -252,6 +252,8 @@ pub(crate) fn identify(
         };
         let data = read_dataset(&folder)?;
         let mut warnings: Vec<String> = data.warnings().iter().map(ToString::to_string).collect();
+        let (glances, subject) = bench_study::glances(&data);
+        warnings.extend(bench_study::compared(&glances, subject));
         let (stored, summary) = match identified_data(&data, &base, Some(&|| ()))? {
             FoundModel::Curves(found) => (found.stored(), json(&found.summary(None))?),
             FoundModel::Records(mut found) => {

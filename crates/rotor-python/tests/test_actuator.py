@@ -50,6 +50,14 @@ def test_runs_in_memory_are_the_same_runs(found):
     assert worst < 2.0, worst
 
 
+def test_runs_are_held_against_one_another():
+    turned = bench.runs()
+    time_s, command_volt, displacement_um = turned["sine_1hz_55v"]
+    turned["sine_1hz_55v"] = (time_s, command_volt, -displacement_um)
+    with pytest.warns(UserWarning, match="falls as the command rises in sine_1hz_55v, and rises in"):
+        rotor_hhc.identify(turned, model="static-preisach", flap_deg_per_um=GAIN)
+
+
 def test_a_file_read_again_is_the_same_actuator(found, file):
     again = rotor_hhc.Actuator.load(file)
     assert (again.model, again.title, again.runs) == (found.model, found.title, found.runs)

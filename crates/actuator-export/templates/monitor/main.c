@@ -36,7 +36,7 @@ int {{name}}_step({{name}}_state *m, double volt, double measured_deg)
     m->residual_deg = sqrt(m->rr / m->weight);
     m->left_deg = sqrt((left > 0.0 ? left : 0.0) / m->weight);
     m->seen = m->residual_deg <= {{NAME}}_THRESHOLD_DEG ? {{NAME}}_SOUND
-              : m->left_deg <= {{NAME}}_THRESHOLD_DEG   ? {{NAME}}_CAUSE
-                                                        : {{NAME}}_OTHER;
+              : m->left_deg <= {{NAME}}_THRESHOLD_DEG && m->amount > 0.0 ? {{NAME}}_CAUSE
+                                                                         : {{NAME}}_OTHER;
     return m->seen;
 }

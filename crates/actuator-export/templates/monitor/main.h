@@ -25,8 +25,8 @@ extern "C" {
 /* What is seen. */
 enum {
     {{NAME}}_SOUND = 0,   /* the residual is within the threshold */
-    {{NAME}}_CAUSE = 1,   /* beyond it, and within it once `amount` of the cause is taken off */
-    {{NAME}}_OTHER = 2    /* beyond it, with the cause taken off too */
+    {{NAME}}_CAUSE = 1,   /* beyond it, and within it once `amount` of the cause, above 0, is taken off */
+    {{NAME}}_OTHER = 2    /* beyond it, with the cause taken off too, or `amount` is 0 or below */
 };
 
 typedef struct {

@@ -21,9 +21,9 @@ THRESHOLD_DEG = {{threshold}}
 SOUND = 0
 """The residual is within the threshold."""
 CAUSE = 1
-"""The residual is beyond it, and within it once `amount` of the cause is taken off."""
+"""The residual is beyond it, and within it once `amount` of the cause, above 0, is taken off."""
 OTHER = 2
-"""The residual is beyond it, with the cause taken off too."""
+"""The residual is beyond it, with the cause taken off too, or `amount` is 0 or below."""
 
 _KEPT = {{kept}}
 
@@ -63,7 +63,8 @@ class Monitor:
         if self.residual_deg <= THRESHOLD_DEG:
             self.seen = SOUND
         else:
-            self.seen = CAUSE if self.left_deg <= THRESHOLD_DEG else OTHER
+            is_cause = self.left_deg <= THRESHOLD_DEG and self.amount > 0.0
+            self.seen = CAUSE if is_cause else OTHER
         return self.seen
 
     def watch(self, volts, measured):

@@ -6,7 +6,7 @@ use crate::common::{
 use actuator_export::{
     ExportError, Monitor, Seen, Target, Watched, export_monitor, without_stages,
 };
-use preisach_dyn::{ActuatorModel, Backlash, LinkageStage, LoadStiffness};
+use preisach_dyn::{ActuatorModel, Backlash, Delay, LinkageStage, LoadStiffness, SensorStage};
 use std::path::Path;
 
 const STEP_S: f64 = 5e-4;
@@ -58,6 +58,22 @@ fn it_tells_sound_from_the_cause_and_from_something_else() {
     assert!(other.seen == Seen::Other && other.left_deg > 0.05, "{other:?}");
 }
 
+#[test]
+fn the_contrary_of_the_cause_is_something_else() {
+    let [closed, open] = models();
+    let base = open.simulate(&volts(), STEP_S).unwrap().output_deg;
+    let sound = closed.simulate(&volts(), STEP_S).unwrap().output_deg;
+    // as much as the gap takes away, added
+    let angles: Vec<f64> =
+        sound.iter().zip(&base).map(|(sound, base)| 2.0 * sound - base).collect();
+    let models = [closed, open];
+    let watch = monitor(&models);
+    let watched = watch.watch(&volts(), &angles, STEP_S).unwrap();
+    let end = watched.last().unwrap();
+    assert!((end.amount + 1.0).abs() < 1e-6 && end.left_deg < watch.threshold_deg, "{end:?}");
+    assert!(end.residual_deg > watch.threshold_deg && end.seen == Seen::Other, "{end:?}");
+}
+
 /// Residual, amount, what is left and what is seen, sample by sample.
 fn rows(watched: &[Watched]) -> Vec<f64> {
     let row = |w: &Watched| {
@@ -78,6 +94,12 @@ fn history(folder: &Path, target: Target) -> Vec<f64> {
     let volts = volts();
     let mut angles = measured(&models[1]);
     angles[100] = f64::NAN;
+    // then the contrary of the cause
+    let [sound, gap] = [0, 1].map(|i| models[i].simulate(&volts, STEP_S).unwrap().output_deg);
+    let half = angles.len() / 2;
+    for i in half..angles.len() {
+        angles[i] = 2.0 * sound[i] - gap[i];
+    }
     for (file, text) in export_monitor(&watch, "watch", STEP_S, target).unwrap() {
         assert!(!text.contains("{{"), "{file}");
         std::fs::write(folder.join(file), text).unwrap();
@@ -185,4 +207,14 @@ fn what_cannot_be_watched_is_refused() {
     assert_eq!(of(&|_| {}, Target::Matlab), ExportError::MonitorTarget);
     let text = of(&|watch| watch.threshold_deg = 0.0, Target::C).to_string();
     assert!(text.contains("the threshold"), "{text}");
+    let text = of(&|watch| watch.memory_s = 1e18, Target::Json).to_string();
+    assert!(text.contains("is 1000000000000000000 s, expected at most 500000000 s"), "{text}");
+    let mut seen_through = models[1].clone();
+    seen_through.sensor.push(SensorStage::Delay(Delay { delay_s: 1e-3 }));
+    let watch = Monitor { extended: &seen_through, ..monitor(&models) };
+    let text = export_monitor(&watch, "watch", STEP_S, Target::Json).unwrap_err().to_string();
+    assert!(
+        text.contains("stages of a sensor (Delay)") && text.contains("take `sensor` out"),
+        "{text}"
+    );
 }

@@ -207,22 +207,27 @@ impl Gather {
             return;
         }
         let message = format!(
-            "{count} blank lines before this row, {usual} between the first two: in a table without a time none can tell whether samples were lost there; import with --split, which begins a run there, or delete the blank lines, or write NaN into those of lost samples"
+            "{count} blank lines or comments before this row, {usual} between the first two: in a table without a time none can tell whether samples were lost there; import with --split, which begins a run there, or delete these lines, or write NaN into those of lost samples"
         );
         let place = self.place(line);
         self.gaps.torn.push(problems, place, Fault::Other(message));
     }
 
     /// Tells of the number that a source without a time gives its next row, numbers that it skips are samples
-    /// without a value. Where the numbers begin again, so does the record.
-    pub(super) fn counted(&mut self, number: f64, line: usize, problems: &mut Problems) {
+    /// without a value. Where the numbers begin again, so does the record. `step`: what they rise by from row to row.
+    pub(super) fn counted(
+        &mut self,
+        (number, step): (f64, f64),
+        line: usize,
+        problems: &mut Problems,
+    ) {
         let Some(last) = self.gaps.counted else {
             self.gaps.counted = Some(number).filter(|number| number.is_finite());
             return;
         };
-        let number = if number.is_finite() { number } else { last + 1.0 };
+        let number = if number.is_finite() { number } else { last + step };
         self.gaps.counted = Some(number);
-        let skipped = (number - last).round() - 1.0;
+        let skipped = ((number - last) / step).round() - 1.0;
         let is_full = FULL_COUNTS.iter().any(|full| (last - full).abs() < 0.5);
         if skipped > 0.0 {
             self.gaps.open = self.gaps.open.saturating_add(whole(skipped.min(1e12)));

@@ -11,7 +11,9 @@
 //! )
 //! ```
 
-use super::{ImportKind, ImportRequest, ImportResult, MOST_SAMPLES, SourceKind, import};
+use super::{
+    ColumnOptions, ImportKind, ImportRequest, ImportResult, MOST_SAMPLES, SourceKind, import,
+};
 use crate::error::DataError;
 use crate::files::{RonFile, RonIndex, Source, read_ron};
 use crate::problem::{Fault, Problems};
@@ -82,20 +84,25 @@ struct MappingFile {
     split: bool,
 }
 
+/// What a column says, as an entry of the option of this meaning, from its name.
+type Entry<'a> = &'a dyn Fn(&ColumnMap, &str) -> Option<String>;
+
 /// A mapping that was read and checked.
 struct Mapping {
     file: MappingFile,
     index: RonIndex,
 }
 
-/// Imports with what a mapping says; what the request says itself goes before it.
+/// Imports with what a mapping says; what the request says itself goes before it, a scale, an offset or a unit of a column
+/// before that of this column alone.
 ///
 /// # Errors
-/// Every problem of the mapping with its line and field; a column that a file lacks, there too; those of [`import`].
+/// Every problem of the mapping with its line and field; a column that a file lacks, there too; what it says of a column that
+/// the request does not take; those of [`import`].
 pub fn import_mapped(request: ImportRequest, mapping: &Path) -> Result<ImportResult, DataError> {
     let mapping = Mapping::read(&Source::read(mapping)?)?;
     let takes_columns = request.columns.columns.is_none();
-    let request = mapping.completed(request);
+    let request = mapping.completed(request)?;
     import(&request).map_err(|error| match error {
         DataError::Rejected(problems) if takes_columns => mapping.placed(problems).into(),
         other => other,
@@ -112,7 +119,7 @@ impl Mapping {
     }
 
     /// A request with what it leaves open.
-    fn completed(&self, mut request: ImportRequest) -> ImportRequest {
+    fn completed(&self, mut request: ImportRequest) -> Result<ImportRequest, Problems> {
         let Self { file, .. } = self;
         let source = |format| match format {
             FormatName::Csv => SourceKind::Csv,
@@ -136,23 +143,53 @@ impl Mapping {
         let columns = &mut request.columns;
         columns.input = columns.input.take().or(file.input.clone());
         columns.response = columns.response.take().or(file.response.clone());
-        if columns.columns.is_none() {
-            let list = |entry: &dyn Fn(&ColumnMap) -> Option<String>| {
-                let entries: Vec<String> = file.columns.iter().filter_map(entry).collect();
-                (!entries.is_empty()).then(|| entries.join(","))
-            };
-            let bare = |own: &ColumnMap| Channel::parse(&own.name).map(|channel| channel.name);
-            let numbered =
-                |own: &ColumnMap, number: Option<f64>| Some(format!("{}={}", bare(own)?, number?));
+        let mut problems = Problems::default();
+        self.complete(columns, &mut problems);
+        problems.into_result(Some(request))
+    }
+
+    /// Takes up the columns, and of each its factor, offset and unit where the options say none of it.
+    fn complete(&self, columns: &mut ColumnOptions, problems: &mut Problems) {
+        let own = &self.file.columns;
+        if columns.columns.is_none() && !own.is_empty() {
             let source = |own: &ColumnMap| own.from.clone().unwrap_or(own.name.clone());
-            columns.columns = list(&|own| Some(format!("{}={}", own.name, source(own))));
-            columns.scale = columns.scale.take().or(list(&|own| numbered(own, own.scale)));
-            columns.offset = columns.offset.take().or(list(&|own| numbered(own, own.offset)));
-            let converted =
-                |own: &ColumnMap| Some(format!("{}_{}", bare(own)?, own.convert.as_ref()?));
-            columns.convert = columns.convert.take().or(list(&converted));
+            let entries = own.iter().map(|own| format!("{}={}", own.name, source(own)));
+            columns.columns = Some(entries.collect::<Vec<_>>().join(","));
         }
-        request
+        let taken: Vec<String> = entries_of(columns.columns.as_ref())
+            .filter_map(|entry| Channel::parse(entry.split('=').next()?))
+            .map(|channel| channel.label())
+            .collect();
+        let numbered = |name: &str, number: Option<f64>| Some(format!("{name}={}", number?));
+        let lists: [(&str, &mut Option<String>, Entry<'_>); 3] = [
+            ("scale", &mut columns.scale, &|own, name| numbered(name, own.scale)),
+            ("offset", &mut columns.offset, &|own, name| numbered(name, own.offset)),
+            ("convert", &mut columns.convert, &|own, name| {
+                Some(format!("{name}_{}", own.convert.as_ref()?))
+            }),
+        ];
+        for (key, list, entry) in lists {
+            let said: Vec<String> = entries_of(list.as_ref()).filter_map(column_of).collect();
+            let mut entries = Vec::new();
+            for (i, own) in own.iter().enumerate() {
+                let Some(channel) = Channel::parse(&own.name) else { continue };
+                let Some(entry) = entry(own, &channel.name) else { continue };
+                if said.contains(&channel.name) {
+                    continue;
+                }
+                if !taken.contains(&channel.label()) {
+                    let message = format!(
+                        "is said of `{label}`, which --columns does not take; take it so: {label}=SOURCE, give --{key} for it, or leave --mapping out",
+                        label = channel.label()
+                    );
+                    let place = self.index.place(&format!("columns[{i}].{key}"));
+                    problems.push(place, Fault::Refused { message });
+                }
+                entries.push(entry);
+            }
+            entries.extend(list.take());
+            *list = (!entries.is_empty()).then(|| entries.join(","));
+        }
     }
 
     /// The problems of an import, those of columns that are missing at the lines that name them too.
@@ -172,6 +209,19 @@ impl Mapping {
         }
         all.append(problems);
         all
+    }
+}
+
+/// The entries of a list of an option.
+fn entries_of(list: Option<&String>) -> impl Iterator<Item = &str> {
+    list.into_iter().flat_map(|text| text.split(',')).map(str::trim)
+}
+
+/// The column that an entry of `--scale`, `--offset` or `--convert` is of.
+fn column_of(entry: &str) -> Option<String> {
+    match entry.split_once('=') {
+        Some((name, _)) => Some(name.trim().to_owned()),
+        None => Channel::parse(entry).map(|channel| channel.name),
     }
 }
 
@@ -241,7 +291,6 @@ fn is_plain(text: &str) -> bool {
 mod tests {
     use super::*;
     use crate::files::write_atomic;
-    use crate::import::ColumnOptions;
     use std::fmt::Write;
 
     const MAP: &str = "(
@@ -299,10 +348,28 @@ mod tests {
             dataset.contains("command x 15, displacement x 100, displacement -300"),
             "{dataset}"
         );
-        // an option goes before the mapping
+        // an option goes before what the mapping says of its column, and leaves the others alone
         let own = ColumnOptions { scale: Some("command=1".into()), ..ColumnOptions::default() };
         let [record, _] = tried(MAP, own).unwrap();
-        assert!(record.contains("\n0,4,-296.2\n"), "{record}");
+        assert!(record.contains("\n0,4,80\n"), "{record}");
+        let own = ColumnOptions { offset: Some("command=2".into()), ..ColumnOptions::default() };
+        let [record, _] = tried(MAP, own).unwrap();
+        assert!(record.contains("\n0,62,80\n"), "{record}");
+        // other sources of the same columns keep their factors
+        let columns = |text: &str| ColumnOptions {
+            columns: Some(text.to_owned()),
+            ..ColumnOptions::default()
+        };
+        let [record, _] =
+            tried(MAP, columns("time_s=Zeit,command_V=#2,displacement_um=#3")).unwrap();
+        assert!(record.contains("\n0,57,100\n"), "{record}");
+        let said = tried(MAP, columns("time_s=Zeit,command_V=#3,displacement_mm=#2")).unwrap_err();
+        assert!(said.contains("map.ron:5:"), "{said}");
+        assert!(
+            said.contains("columns[2].offset: is refused: is said of `displacement_um`"),
+            "{said}"
+        );
+        assert!(!said.contains("command"), "{said}");
     }
 
     #[test]

@@ -240,8 +240,9 @@ impl SourceKind {
 const STANDARD_INPUT: &str = "-";
 /// The first bytes of a gzip archive.
 const GZIP: &[u8] = b"\x1f\x8b";
-/// Bytes by which a source is recognised.
-const START: u64 = 1024;
+/// Bytes by which a source is recognised, HDF5 by up to 65,544: its signature may stand behind a block of the user.
+const RECOGNISED: usize = 1024;
+const START: u64 = 65_544;
 /// Most bytes of a source that is read whole.
 const LARGEST_WHOLE: u64 = 1 << 30;
 
@@ -280,9 +281,9 @@ impl OpenSource {
         let start = read_at_most(&mut reader, START).map_err(|e| refused(e.into()))?;
         let mut reader: Box<dyn BufRead> = Box::new(Cursor::new(start.clone()).chain(reader));
         let mut head = start;
-        if let Some(is_little) = text::utf16(&head) {
+        if let Some(is_little) = text::utf16(&head[..head.len().min(RECOGNISED)]) {
             let text = text::from_utf16(&whole(&mut reader)?, is_little).into_bytes();
-            head = text.iter().copied().take(1024).collect();
+            head = text.iter().copied().take(RECOGNISED).collect();
             reader = Box::new(Cursor::new(text));
         }
         let kind = match request.source {
@@ -396,6 +397,7 @@ fn recognise(start: &[u8], path: &Path) -> Result<SourceKind, Fault> {
     if let Some(byte_order) = mat::byte_order(start, named_mat) {
         return byte_order.map(|_| SourceKind::Mat);
     }
+    let start = &start[..start.len().min(RECOGNISED)];
     if start.starts_with(tdms::MAGIC) {
         return Ok(SourceKind::Tdms);
     }

@@ -180,6 +180,10 @@ fn rows(xml: &str, shared: &[String], dated: &[bool]) -> Option<String> {
                 let blank = if last_row > 0 { number.saturating_sub(last_row + 1) } else { 0 };
                 table.push_str(&"\t\n".repeat(blank));
                 last_row = number;
+                // a row of a height alone, which has no end of its own
+                if attributes.ends_with('/') {
+                    table.push_str("\t\n");
+                }
             }
             "c" => {
                 kind = attribute(attributes, "t").unwrap_or("n");
@@ -244,6 +248,10 @@ mod tests {
         // rows that hold nothing are not stored, and none the less there
         let row = |number: usize| format!("<row r=\"{number}\"><c><v>1</v></c></row>");
         let sheet = [3, 4, 7].map(row).concat();
+        assert_eq!(rows(&sheet, &[], &[]).unwrap(), "1\n1\n\t\n\t\n1\n");
+        // nor those that only have a height
+        let tall = "<row r=\"5\" ht=\"20\" customHeight=\"1\"/>".to_owned();
+        let sheet = [row(3), row(4), tall, row(7)].concat();
         assert_eq!(rows(&sheet, &[], &[]).unwrap(), "1\n1\n\t\n\t\n1\n");
     }
 }

@@ -12,6 +12,8 @@ use std::io::Read;
 pub(crate) const LEAST_ROWS: usize = 3;
 /// Largest size of a number that can have been measured, in the units of any channel.
 const LARGEST: f64 = 1e12;
+/// What a line of comment begins with.
+const COMMENT: u8 = b'#';
 /// Characters of a row that are shown in a message.
 const SHOWN: usize = 80;
 
@@ -22,14 +24,14 @@ pub(crate) fn too_few_rows(rows: usize) -> Fault {
     ))
 }
 
-/// A reader that remembers how its text ended, and which of its lines are empty: those vanish behind it.
+/// A reader that remembers how its text ended, and which of its lines are empty or comments: those vanish behind it.
 struct Ending<R> {
     inner: R,
     last: u8,
     is_at_end: bool,
     /// Line ends read.
     lines: usize,
-    /// Numbers of the empty lines, from 1, that no row was read behind yet.
+    /// Numbers of the empty lines and of the comments, from 1, that no row was read behind yet.
     empty: VecDeque<usize>,
 }
 
@@ -38,7 +40,7 @@ impl<R> Ending<R> {
         Self { inner, last: b'\n', is_at_end: false, lines: 0, empty: VecDeque::new() }
     }
 
-    /// Takes the empty lines before a line; how many there are.
+    /// Takes the empty lines and comments before a line; how many there are.
     fn empty_before(&mut self, line: usize) -> usize {
         let count = self.empty.partition_point(|at| *at < line);
         self.empty.drain(..count).count()
@@ -50,12 +52,11 @@ impl<R: Read> Read for Ending<R> {
         let count = self.inner.read(buffer)?;
         self.is_at_end |= count == 0;
         for byte in &buffer[..count] {
-            if *byte == b'\n' {
-                self.lines += 1;
-                if self.last == b'\n' {
-                    self.empty.push_back(self.lines);
-                }
+            let begins = self.last == b'\n';
+            if begins && matches!(*byte, b'\n' | COMMENT) {
+                self.empty.push_back(self.lines + 1);
             }
+            self.lines += usize::from(*byte == b'\n');
             self.last = *byte;
         }
         Ok(count)
@@ -78,7 +79,7 @@ struct Row {
 pub(crate) struct RowPlace {
     /// Its line in the file, from 1.
     pub(crate) line: usize,
-    /// Blank lines right before it.
+    /// Blank lines and comments right before it.
     pub(crate) blank_before: usize,
 }
 
@@ -163,7 +164,7 @@ impl<R: Read> TextTable<R> {
             .delimiter(separator)
             .has_headers(false)
             .flexible(true)
-            .comment(Some(b'#'))
+            .comment(Some(COMMENT))
             .terminator(Terminator::Any(b'\n'))
             .from_reader(Ending::new(reader));
         let (file, pending) = (file.to_owned(), None);

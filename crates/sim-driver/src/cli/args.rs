@@ -344,9 +344,9 @@ pub struct ExportArgs {
     /// RMS residual that a sound actuator does not reach, deg: beyond it the monitor speaks. `hhc predict` tells that of a record.
     #[arg(long, value_name = "DEG", requires = "monitor", allow_negative_numbers = true)]
     pub threshold_deg: Option<f64>,
-    /// Memory of the monitor, s.
-    #[arg(long, value_name = "S", default_value_t = 1.0, allow_negative_numbers = true)]
-    pub memory_s: f64,
+    /// Memory of the monitor, s; 1 if left out.
+    #[arg(long, value_name = "S", requires = "monitor", allow_negative_numbers = true)]
+    pub memory_s: Option<f64>,
     /// Name of files and functions, a lower-case identifier; `flap_actuator` of an actuator, `flap_monitor`, or `rotor` of a case
     /// if left out.
     #[arg(long, value_name = "NAME")]

@@ -90,7 +90,7 @@ fn watching(
         extended,
         cause: &args.monitor.join(", "),
         threshold_deg: args.threshold_deg.unwrap_or_default(),
-        memory_s: args.memory_s,
+        memory_s: args.memory_s.unwrap_or(1.0),
     };
     export_monitor(&monitor, name, 1.0 / args.sampling_hz, target)
 }

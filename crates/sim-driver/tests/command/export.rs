@@ -270,6 +270,10 @@ fn a_named_cause_leaves_as_its_monitor() {
     with(&["--to", "matlab", "--threshold-deg", "1"]).rejected(&["in C, Python or JSON"]);
     with(&["--to", "c", "--threshold-deg", "-1"])
         .rejected(&["the threshold is -1, expected a positive"]);
+    let long = ["--to", "c", "--threshold-deg", "1", "--memory-s", "1e17"];
+    with(&long).rejected(&["the memory of the monitor is 100000000000000000 s, expected at most"]);
+    let alone = ["export", "worn.ron", "--to", "c", "-o", "w", "--memory-s", "2"];
+    place.hhc(&alone).rejected(&["--monitor"]);
     let args = [
         "export",
         "worn.ron",

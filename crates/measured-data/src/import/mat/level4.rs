@@ -87,7 +87,7 @@ fn variable(bytes: &mut Bytes<'_>, is_little: bool) -> Result<(String, MatValue)
             let letter = |v: f64| format!("{v:.0}").parse().ok().and_then(char::from_u32);
             MatValue::Text(values.into_iter().filter_map(letter).collect())
         }
-        _ => MatValue::Other("sparse matrix"),
+        _ => MatValue::Other("sparse matrix".to_owned()),
     };
     Ok((name, value))
 }

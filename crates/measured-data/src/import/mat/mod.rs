@@ -43,8 +43,12 @@ pub(super) fn byte_order(start: &[u8], named_mat: bool) -> Option<Result<bool, F
 /// Whether a file is HDF5, of MATLAB's format 7.3 or any other.
 fn is_hdf5(start: &[u8]) -> bool {
     const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
-    let at_512 = start.get(512..).is_some_and(|rest| rest.starts_with(SIGNATURE));
-    start.starts_with(SIGNATURE) || at_512 || start.starts_with(b"MATLAB 7.3")
+    let is_at = |at: usize| start.get(at..).is_some_and(|rest| rest.starts_with(SIGNATURE));
+    // behind a block of the user: 512, 1024, 2048 ... bytes
+    let mut blocks = std::iter::successors(Some(512), |at| Some(2 * at));
+    is_at(0)
+        || start.starts_with(b"MATLAB 7.3")
+        || blocks.by_ref().take_while(|at| *at < start.len()).any(is_at)
 }
 
 /// What to do with HDF5 where it is not read.

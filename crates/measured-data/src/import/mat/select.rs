@@ -3,6 +3,7 @@
 use super::value::{MatValue, Variables};
 use crate::import::in_memory::WholeColumns;
 use crate::problem::Fault;
+use std::fmt::Write;
 
 /// Most numeric variables listed in a message.
 const LISTED: usize = 12;
@@ -17,14 +18,15 @@ pub(super) fn select(variables: &Variables, path: Option<&str>) -> Result<WholeC
         let found = listing(variables);
         Fault::Other(format!("`{path}` {what}; the file has: {found}; choose one with --variable"))
     };
-    let (value, name) = match (path, variables.as_slice()) {
-        (Some(path), _) => {
+    let mut read = variables.iter().filter(|(_, value)| !matches!(value, MatValue::Other(_)));
+    let (value, name) = match (path, read.next(), read.next()) {
+        (Some(path), ..) => {
             (walk(variables, path).map_err(|what| refused(path, what))?, path.to_owned())
         }
-        (None, []) => return Err(refused("the file", "holds no variable")),
-        (None, [(name, value)]) => (value, name.clone()),
-        (None, all) => {
-            return structure(all, "all variables")
+        (None, None, _) => return Err(refused("the file", "holds no variable that is read")),
+        (None, Some((name, value)), None) => (value, name.clone()),
+        (None, ..) => {
+            return structure(variables, "all variables")
                 .ok_or_else(|| refused("the file", "holds no vectors of one length"));
         }
     };
@@ -106,7 +108,8 @@ fn with_time(fields: &[(String, MatValue)], signals: &MatValue) -> Vec<(String, 
     all
 }
 
-/// The numeric vectors of the commonest length among fields; scalars and others are left out.
+/// The numeric vectors of the commonest length among fields, of lengths alike in number the longest; scalars and others are
+/// left out.
 fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
     let vector = |(name, value): &'_ (String, MatValue)| match value {
         MatValue::Numeric { sizes, values } if sizes.iter().filter(|s| **s != 1).count() == 1 => {
@@ -115,10 +118,16 @@ fn vectors(fields: &[(String, MatValue)], name: &str) -> Option<WholeColumns> {
         _ => None,
     };
     let all: Vec<(String, Vec<f64>)> = fields.iter().filter_map(vector).collect();
-    let longest = all.iter().map(|(_, v)| v.len()).max()?;
+    let count = |length: usize| all.iter().filter(|(_, v)| v.len() == length).count();
+    let length = all.iter().map(|(_, v)| v.len()).max_by_key(|v| (count(*v), *v))?;
     let (names, columns): (Vec<_>, Vec<_>) =
-        all.into_iter().filter(|(_, v)| v.len() == longest).unzip();
-    let taken = format!("{name}: {} of {longest} samples", names.join(", "));
+        all.into_iter().filter(|(_, v)| v.len() == length).unzip();
+    let mut taken = format!("{name}: {} of {length} samples", names.join(", "));
+    for (name, value) in fields {
+        if let MatValue::Other(what) = value {
+            let _ = write!(taken, "; {name} is not read: {what}");
+        }
+    }
     (columns.len() > 1).then_some(WholeColumns { names: Some(names), columns, step_s: None, taken })
 }
 
@@ -193,6 +202,7 @@ fn list(name: &str, value: &MatValue, names: &mut Vec<String>) {
                 list(&format!("{name}.{field}"), value, names);
             }
         }
-        MatValue::Text(_) | MatValue::Other(_) => {}
+        MatValue::Other(what) => names.push(format!("{name} (not read: {what})")),
+        MatValue::Text(_) => {}
     }
 }

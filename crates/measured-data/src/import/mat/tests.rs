@@ -184,6 +184,21 @@ fn rows_stand_for_columns_where_there_are_more_columns() {
 }
 
 #[test]
+fn vectors_of_the_commonest_length_are_the_record() {
+    let vector = |name: &str, values: &[f64]| {
+        let sizes = vec![values.len(), 1];
+        (name.to_owned(), MatValue::Numeric { sizes, values: values.to_vec() })
+    };
+    let long: Vec<f64> = (0..9).map(f64::from).collect();
+    let mut all = vec![vector("t", &TIME), vector("long", &long), vector("u", &U), vector("x", &X)];
+    assert_eq!(select(&all, None).unwrap().columns, [TIME, U, X]);
+    // of two lengths as common as one another the longer one
+    all.remove(3);
+    all.push(vector("longer", &long));
+    assert_eq!(select(&all, None).unwrap().columns, [&long[..], &long[..]]);
+}
+
+#[test]
 fn a_record_with_units_of_its_own() {
     let options = ColumnOptions {
         columns: Some("time_s=t,command_V=u,displacement_mm=x".into()),

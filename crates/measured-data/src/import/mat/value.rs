@@ -23,7 +23,7 @@ pub enum MatValue {
     /// An array of structures of several or no elements, the first index running fastest.
     Structs(Vec<MatValue>),
     /// An array of a class that holds no measurement.
-    Other(&'static str),
+    Other(String),
 }
 
 /// The variables of a file, in their order.
@@ -115,7 +115,7 @@ fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), Fault
     };
     if class > LAST_NUMERIC || class == 0 {
         // functions and objects of classes: their layout is not public
-        return Ok((String::new(), MatValue::Other("object")));
+        return Ok((String::new(), MatValue::Other("object".to_owned())));
     }
     let sizes = bytes.element()?.sizes()?;
     let product = |sizes: &[usize]| sizes.iter().try_fold(1_usize, |p, s| p.checked_mul(*s));
@@ -130,8 +130,8 @@ fn array(mut bytes: Bytes<'_>, depth: usize) -> Result<(String, MatValue), Fault
             MatValue::Cell((0..count).map(|_| inner(&mut bytes, depth)).collect::<Result<_, _>>()?)
         }
         STRUCT => structure(&mut bytes, count, depth)?,
-        OBJECT => MatValue::Other("object"),
-        SPARSE => MatValue::Other("sparse matrix"),
+        OBJECT => MatValue::Other("object".to_owned()),
+        SPARSE => MatValue::Other("sparse matrix".to_owned()),
         CHAR => {
             let element = bytes.element()?;
             let characters = element.numbers()?;

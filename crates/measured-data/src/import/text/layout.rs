@@ -168,13 +168,16 @@ impl Block {
         )
     }
 
-    /// Whether a column counts the rows, some of which may be missing: whole numbers, most of them one more than the last.
-    fn counts(&self, column: usize) -> bool {
+    /// What a column rises by from row to row that counts the rows, some of which may be missing: whole numbers, most of
+    /// them by the same step above the last.
+    fn counts(&self, column: usize) -> Option<f64> {
         let values: Vec<f64> = self.column(column).filter(|value| value.is_finite()).collect();
-        let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
-        let by_one = steps.filter(|step| (step - 1.0).abs() < 1e-9).count();
+        let mut steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        steps.sort_by(f64::total_cmp);
+        let usual = steps.get(steps.len() / 2).copied().filter(|step| *step > 0.5)?;
+        let by_usual = steps.iter().filter(|step| (*step - usual).abs() < 1e-9).count();
         let is_whole = values.iter().all(|value| value.fract().abs() < 1e-9);
-        is_whole && values.len() > 3 && 10 * by_one >= 9 * (values.len() - 1)
+        (is_whole && values.len() > 3 && 10 * by_usual >= 9 * steps.len()).then_some(usual)
     }
 
     /// The numbers of a column in the head.
@@ -221,8 +224,8 @@ pub(super) struct Layout {
     pub(super) stamps: Vec<usize>,
     /// Time between two rows that is stated above them, s.
     pub(super) step_s: Option<f64>,
-    /// Columns that count the rows.
-    counters: Vec<usize>,
+    /// Columns that count the rows, and what they rise by from row to row.
+    counters: Vec<(usize, f64)>,
 }
 
 impl Layout {
@@ -281,12 +284,13 @@ impl Layout {
         };
         // who leaves a time out has his reasons
         let counters = block.numeric.iter().copied();
-        layout.counters = counters.filter(|i| !is_time(*i) && block.counts(*i)).collect();
+        let counters = counters.filter(|i| !is_time(*i));
+        layout.counters = counters.filter_map(|i| Some((i, block.counts(i)?))).collect();
         Ok(Some(layout))
     }
 
-    /// A column that counts the rows and is not taken; none that `-` leaves out in its place of `--columns`.
-    pub(super) fn counter(&self, choice: &Choice, options: &ColumnOptions) -> Option<usize> {
+    /// A column that counts the rows and is not taken, and its step; none that `-` leaves out in its place of `--columns`.
+    pub(super) fn counter(&self, choice: &Choice, options: &ColumnOptions) -> Option<(usize, f64)> {
         let entries: Vec<&str> =
             options.columns.iter().flat_map(|text| text.split(',')).map(str::trim).collect();
         let in_place = entries.len() == self.width;
@@ -294,7 +298,7 @@ impl Layout {
             let is_taken = choice.taken().any(|taken| taken.source == column);
             !(is_taken || in_place && entries[column] == "-")
         };
-        self.counters.iter().copied().find(|column| is_free(*column))
+        self.counters.iter().copied().find(|(column, _)| is_free(*column))
     }
 
     /// Whether it holds a time and one channel, which another table may complete.

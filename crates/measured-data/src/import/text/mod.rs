@@ -162,11 +162,11 @@ pub(super) fn read_csv(
     let mut problems = Problems::default();
     let mut gather = choice.gather(file, reduction);
     let mut wanted: Vec<_> = choice.taken().map(|t| (t.source, t.channel.label())).collect();
-    wanted.extend(counter.map(|column| (column, "number of the row".to_owned())));
+    wanted.extend(counter.map(|(column, _)| (column, "number of the row".to_owned())));
     let read = |column: usize, text: &str| {
         let value = number(text, layout.decimal);
         let value = value.or_else(|| stamp(text).filter(|_| layout.stamps.contains(&column)));
-        let value = value.or((counter == Some(column)).then_some(f64::NAN));
+        let value = value.or(counter.is_some_and(|(own, _)| own == column).then_some(f64::NAN));
         value.ok_or_else(|| Fault::NotANumber { text: text.to_owned() })
     };
     let (mut last_line, mut behind) = (0, 0);
@@ -181,8 +181,8 @@ pub(super) fn read_csv(
         if is_untimed {
             gather.blank_lines(at.blank_before, line, problems);
         }
-        if let (Some(_), Some(number)) = (counter, numbers.last()) {
-            gather.counted(*number, line, problems);
+        if let (Some((_, step)), Some(number)) = (counter, numbers.last()) {
+            gather.counted((*number, step), line, problems);
         }
         let mut row: Vec<f64> = choice.converted(numbers.iter().copied()).collect();
         let zero = *origin.get_or_insert(if row[0] > CLOCK_S { row[0] } else { 0.0 });

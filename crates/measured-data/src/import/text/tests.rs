@@ -190,7 +190,7 @@ fn rows_that_are_missing_move_no_later_sample() {
         let empty = |k: usize| if k == 30 { line.to_owned() + &full(k) } else { full(k) };
         let text = format!("u [V];x [um]\n{}", table(&empty));
         let said = at_rate(&text, "", false).unwrap_err();
-        assert!(said.contains("r.csv:33:1: 1 blank lines before this row"), "{said}");
+        assert!(said.contains("r.csv:33:1: 1 blank lines or comments before this row"), "{said}");
         let parts = at_rate(&text, "", true).unwrap();
         assert_eq!(parts.iter().map(|part| part.count).collect::<Vec<_>>(), [30, 30]);
     }
@@ -209,6 +209,18 @@ fn rows_that_are_missing_move_no_later_sample() {
     let text = format!("n;u [V];x [um]\n{}", table(&numbered));
     let found = at_rate(&text, "", false).unwrap();
     assert_eq!(found[0].columns[0][23..], truth[0].columns[0][23..]);
+    // and those of a recorder that keeps every tenth
+    let tenth = |k: usize| match k {
+        20..23 => String::new(),
+        _ => format!("{};{}", 10 * k, full(k)),
+    };
+    let by_ten = at_rate(&format!("n;u [V];x [um]\n{}", table(&tenth)), "", false).unwrap();
+    assert_eq!(by_ten[0].columns, found[0].columns);
+    // a line that became a comment was a row
+    let comment = |k: usize| if k == 30 { format!("#{}", full(k)) } else { full(k) };
+    let commented = format!("u [V];x [um]\n{}", table(&comment));
+    let said = at_rate(&commented, "", false).unwrap_err();
+    assert!(said.contains("r.csv:33:1: 1 blank lines or comments before this row"), "{said}");
     // unless the user leaves them out
     assert_eq!(at_rate(&text, "-,u_V,x_um", false).unwrap()[0].count, 57);
     // numbers that begin again, at the end of a counter or in another record
