@@ -108,6 +108,32 @@ fn a_t_that_is_handed_in_meets_the_rotor_as_it_is() {
     }
 }
 
+/// A T of the wrong sign drives the rotor the wrong way at once: no phase, gain or speed is left, though one knot alone is known.
+#[test]
+fn a_t_of_the_wrong_sign_has_no_margins() {
+    let mut case = case();
+    let values = FlightValues { end_advance_ratio: 0.15, ..values(&[3]) };
+    let own = FlyingCase::new(&case, &values, &ideal()).unwrap();
+    let right = own.margins().unwrap().sets[0].points[0].clone();
+    let theory = (0.5 * own.margins().unwrap().gain).acos().to_degrees();
+    assert!((right.common_phase_deg - theory).abs() < 1.0, "{right:?}");
+    assert_eq!(right.holds_within, [None; 2]);
+    let state = FlightState { advance_ratio: 0.15, thrust_share: 0.0 };
+    let t = own.flight_at(&[3]).unwrap().identify(state).unwrap();
+    let columns = t.turned(-1.0, 0.0).unwrap().columns();
+    let set = HandedSet { harmonics: vec![3], advance_ratios: vec![0.15], columns: vec![columns] };
+    case.control.handed_t = Some(Arc::new(HandedT { sets: vec![set], ..HandedT::default() }));
+    let study = FlyingCase::new(&case, &values, &ideal()).unwrap().margins().unwrap();
+    let [point] = &study.sets[0].points[..] else { panic!("one knot") };
+    assert!((point.whole_step_radius[0] - 2.0).abs() < 2e-3, "{point:?}");
+    let phases = [point.common_phase_deg, point.common_overshoot_deg];
+    let phases = [&phases[..], &point.flap_overshoot_deg, &point.load_phase_deg].concat();
+    assert!(phases.iter().all(|deg| deg.to_bits() == 0), "{point:?}");
+    let gains = [&[point.common_gain][..], &point.load_gain].concat();
+    assert!(gains.iter().all(|gain| gain.to_bits() == 1.0_f64.to_bits()), "{point:?}");
+    assert_eq!(point.holds_within, [Some(0.15); 2]);
+}
+
 /// A weight of the change slows the loop, and the radius knows it: by `(1 - gain)` of the way without one, hardly at all with
 /// one that outweighs T. The flight takes the smaller steps.
 #[test]

@@ -378,7 +378,7 @@ impl<'a> Flights<'a> {
     fn margins(&self) -> Result<MarginLine, ControlError> {
         let law = FeedbackLaw::new(&self.t0, &self.settings.load_weights)?;
         let layout = self.plant.layout();
-        let found = law.margins(layout, self.settings.step(), &self.baseline)?;
+        let found = law.margins(layout, law.t(), self.settings.step(), &self.baseline)?;
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             condition: law.condition(),
