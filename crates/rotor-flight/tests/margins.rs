@@ -5,7 +5,7 @@ mod common;
 
 use common::actuator;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
-use rotor_flight::{Flight, FlightState, FlyingCase, Guidance, MarginPoint, fly};
+use rotor_flight::{FlightState, FlownCase, FlyingCase, Guidance, MarginPoint, fly};
 use rotor_study::case::{Case, FlightController, FlightValues, HandedSet, HandedT};
 use std::sync::Arc;
 
@@ -160,19 +160,20 @@ fn draws_are_common_and_their_spread_is_that_of_the_flights() {
     let values = FlightValues { noise_percent: 3.0, duration_s: 6.0, knots: 2, ..values(&[3]) };
     let flying = FlyingCase::new(&case, &values, &actuator()).unwrap();
     let drawn = flying.draws(5, &|| ()).unwrap();
-    let flight = flying.flight_at(&[3]).unwrap();
-    let mut last: Vec<f64> = (0..5)
-        .map(|draw| {
-            let flight = Flight { seed: flight.seed + draw, ..flight.clone() };
-            fly(&flight, &Guidance::Fixed).unwrap().last().unwrap().cost_ratio
-        })
-        .collect();
-    last.sort_by(f64::total_cmp);
-    let fixed = &drawn.controllers[0];
-    assert_eq!(fixed.controller, "fixed");
-    let (_, spread) = fixed.cycles.last().unwrap();
-    assert_eq!(spread.map(f64::to_bits), [last[0], last[2], last[4]].map(f64::to_bits));
-    assert!(spread[0] < spread[2]);
-    assert_eq!(drawn.controllers[1].cycles.len(), fixed.cycles.len());
+    let seeded = (0..5).map(|draw| {
+        let values = FlightValues { seed: values.seed + draw, ..values.clone() };
+        FlyingCase::new(&case, &values, &actuator()).unwrap().fly(&|| ()).unwrap()
+    });
+    let seeded: Vec<FlownCase> = seeded.collect();
+    // the flights of the seeds, one by one, for either controller
+    for (k, (drawn, name)) in drawn.controllers.iter().zip(["fixed", "adaptive"]).enumerate() {
+        assert_eq!(drawn.controller, name);
+        let mut last: Vec<f64> =
+            seeded.iter().map(|flown| flown.flights[k].points.last().unwrap().cost_ratio).collect();
+        last.sort_by(f64::total_cmp);
+        let (_, spread) = drawn.cycles.last().unwrap();
+        assert_eq!(spread.map(f64::to_bits), [last[0], last[2], last[4]].map(f64::to_bits));
+        assert!(spread[0] < spread[2], "{name}: {spread:?}");
+    }
     assert!(flying.draws(0, &|| ()).is_err());
 }
