@@ -201,7 +201,7 @@ fn about(spec: &ControllerSpec) -> Vec<String> {
         String::new(),
         format!("    loads    Z = harmonics of the hub loads at {} per rev", spec.load_harmonic),
         "    cost     J = Z'WZ + rho u'u + du'S du,   Z = Z_here + T du".to_owned(),
-        "    step     u <- u + g c ( argmin J over |u_p| <= U_p  -  u )".to_owned(),
+        "    step     u <- u + min(g, c) ( argmin J over |u_p| <= U_p  -  u )".to_owned(),
         format!(
             "    control  cosine and sine voltage of each flap at {} per rev",
             harmonics.join(", ")

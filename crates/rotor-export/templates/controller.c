@@ -19,6 +19,8 @@ enum {
 
 /* Beyond it a nondimensional load is no load; its squares must stay numbers. */
 static const double LARGEST_LOAD = 1e100;
+/* Beyond half of it no sample is one: a harmonic is at most twice the largest sample. */
+static const double LARGEST_SAMPLE = 0.5e100;
 
 {{constants}}
 
@@ -153,7 +155,7 @@ static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linea
 
 /* ---- relaxed step ----------------------------------------------------------------------------- */
 
-/* J = Z'WZ + rho u'u + du'S du;  u <- u + g c (argmin J in the discs - u), c by the rate. */
+/* J = Z'WZ + rho u'u + du'S du;  u <- u + min(g, c) (argmin J in the discs - u), c by the rate. */
 static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outputs[LOADS])
 {
     double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
@@ -253,7 +255,7 @@ int {{name}}_sample({{name}}_state *s, const double hub[CHANNELS], double advanc
     double loads[LOADS], *sums = s->sums[s->revolution];
     int c, k, rev;
     for (c = 0; c < CHANNELS; ++c) {
-        if (!isfinite(hub[c]) && !(s->is_load_lost[2 * c] && s->is_load_lost[2 * c + 1])) {
+        if (!(fabs(hub[c] / LOAD_UNIT[c]) <= LARGEST_SAMPLE) && !(s->is_load_lost[2 * c] && s->is_load_lost[2 * c + 1])) {
             return {{NAME}}_BAD_INPUT;
         }
     }
@@ -265,7 +267,8 @@ int {{name}}_sample({{name}}_state *s, const double hub[CHANNELS], double advanc
         return {{NAME}}_TAKEN;
     }
     for (c = 0; c < CHANNELS; ++c) {
-        const double value = isfinite(hub[c]) ? hub[c] / LOAD_UNIT[c] : 0.0;
+        const double load = hub[c] / LOAD_UNIT[c];
+        const double value = fabs(load) <= LARGEST_SAMPLE ? load : 0.0;
         for (k = 0; k < 2; ++k) {
             sums[2 * c + k] = (s->sample == 0 ? 0.0 : sums[2 * c + k]) + WAVE[s->sample][k] * value;
         }

@@ -24,7 +24,7 @@ enum { {{NAME}}_SETTLING_REV = {{settling_rev}} };         /* revolutions of a c
 enum { {{NAME}}_WINDOW_REV = {{window_rev}} };           /* revolutions of a cycle that are */
 
 /* What a call did. */
-enum { {{NAME}}_BAD_INPUT = -1 };          /* a number that is none, or a load beyond 1e100; nothing was changed */
+enum { {{NAME}}_BAD_INPUT = -1 };          /* a number that is none, a load beyond 1e100 or a sample beyond half of that; nothing was changed */
 enum { {{NAME}}_TAKEN = 0 };
 enum { {{NAME}}_STEPPED = 1 };             /* there is a new control */
 

@@ -234,6 +234,21 @@ int main(void)
     NAME_resync(&s);
     for (i = 0; i < UPPER_LOADS; ++i) line[i] = 1e101;
     if (NAME_cycle(&s, line, 0.1) != UPPER_BAD_INPUT) return 8;
+    /* a sample too large to be one is not counted: the one given in its place ends the cycle */
+    for (i = 0; i < SAMPLES_PER_CYCLE; ++i) {
+        const int is_last = i + 1 == SAMPLES_PER_CYCLE;
+        if (is_last && NAME_sample(&s, (const double[6]){1e108, 0, 0, 0, 0, 0}, 0.1) != UPPER_BAD_INPUT) return 9;
+        k = NAME_sample(&s, (const double[6]){9, 9, 9, 9, 9, 9}, 0.1);
+        if (k != (is_last ? UPPER_STEPPED : UPPER_TAKEN)) return 10;
+    }
+    /* the largest harmonic that samples within the bound can have is a load */
+    NAME_start(&s);
+    for (i = 0; i < SAMPLES_PER_CYCLE; ++i) {
+        const double side = cos(4.0 * 6.283185307179586 * i / 32.0) < 0.0 ? -4.9e99 : 4.9e99;
+        k = NAME_sample(&s, (const double[6]){2.5e5 * side, 0, 0, 0, 0, 0}, 0.1);
+        if (k == UPPER_BAD_INPUT) return 11;
+    }
+    NAME_start(&s);
     while (fread(sample, sizeof sample, 1, in) == 1) {
         if (rest == SAMPLES_PER_CYCLE) {
             EVENTS

@@ -31,7 +31,8 @@ pub struct MarginSet {
     pub points: Vec<MarginPoint>,
 }
 
-/// How wrong the T of one advance ratio may be. Each error is alone.
+/// How wrong the T of one advance ratio may be. Each error is alone; it multiplies the rotor's own T and comes on top of what a T
+/// that is handed in errs by. A loop that diverges without one has phases of 0 deg and gains of 1.
 ///
 /// Serialised, a limit that does not exist is the word `unbounded` in the place of its number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -64,7 +65,7 @@ pub struct MarginPoint {
     /// The same in whole steps.
     pub whole_step_radius: Vec<f64>,
     /// Lowest and highest advance ratio between which whole steps with this T converge; none at an end that the speeds of the
-    /// flight do not reach.
+    /// flight do not reach, `advance_ratio` itself at both where they diverge there.
     #[serde(serialize_with = "limit::reach")]
     pub holds_within: [Option<f64>; 2],
 }
@@ -100,9 +101,9 @@ impl FlyingCase<'_> {
             let state = at(advance_ratio);
             let law = FeedbackLaw::new(&flight.t_in(state, &steps)?, weights)?;
             let baseline = flight.path.loads(state, &[])?;
-            let found = law.margins(&flight.layout, step, &baseline)?;
+            let found = law.margins(&flight.layout, &each[k], step, &baseline)?;
             let loads = (0..HubLoads::NAMES.len())
-                .map(|load| law.load_margin(step, load))
+                .map(|load| law.load_margin(&each[k], step, load))
                 .collect::<Result<Vec<_>, _>>()?;
             let radii = |step: RelaxedStep| -> Result<Vec<f64>, FlightError> {
                 each.iter().map(|there| Ok(law.relaxed_spectral_radius(step, there)?)).collect()
@@ -147,6 +148,11 @@ fn reach(
         .collect();
     if downward {
         places.reverse();
+    }
+    if let Some(&own) = places.first()
+        && radius(own)? >= 1.0
+    {
+        return Ok(Some(own));
     }
     for pair in places.windows(2) {
         let (mut inside, mut outside) = (pair[0], pair[1]);

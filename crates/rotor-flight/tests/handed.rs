@@ -7,7 +7,7 @@ use common::actuator;
 use preisach_dyn::ActuatorModel;
 use rotor_export::Document;
 use rotor_flight::{FlightError, FlownCase, FlyingCase, exported_case, handed_t};
-use rotor_study::case::{Case, FlightValues, InflowChoice};
+use rotor_study::case::{ActuatorChoice, BiasChoice, Case, FlightValues, InflowChoice};
 use std::sync::Arc;
 
 fn case() -> Case {
@@ -77,18 +77,24 @@ fn what_t_was_found_with_is_compared_with_the_case() {
     other.control.load_weights.fz = 4.0;
     other.actuator.range_volt.1 = 120.0;
     other.rotor.omega_rpm = 300.0;
+    other.actuator.model = ActuatorChoice::Ideal;
+    other.actuator.bench_rev_hz = 6.0;
+    other.control.bias = BiasChoice::Fixed(case.control.bias_volt);
     other.inflow.model = InflowChoice::PittPeters;
     if let Some(flight) = &mut other.flight {
         flight.rate_limit_volt = 3.0;
     }
     let said = told(&other);
-    assert_eq!(said.len(), 5, "{said:?}");
+    assert_eq!(said.len(), 8, "{said:?}");
     for (line, parts) in said.iter().zip([
         ["`rotor_rpm` 383, the case has 300", "`rotor.omega_rpm`"],
+        ["`bench_rev_hz` 5, the case has 6", "`actuator.bench_rev_hz`"],
+        ["`bias_held` 0, the case has 1", "`control.bias`"],
         ["`highest_V` 150, the case has 120", "`actuator.range_V`"],
         ["`rate_limit_V` 10, the case has 3", "`flight.rate_limit_V`"],
         ["`fz_4_per_rev_cos` 1, the case has 4", "`control.load_weights`"],
         ["Inflow: Drees", "Inflow: PittPeters"],
+        ["Actuator: Bench, data set `shipped:apa500l_synthetic`.", "Actuator: Ideal, 10 deg"],
     ]) {
         assert!(parts.iter().all(|part| line.contains(part)), "{line}: {parts:?}");
     }

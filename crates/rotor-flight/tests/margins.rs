@@ -5,7 +5,7 @@ mod common;
 
 use common::actuator;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
-use rotor_flight::{Flight, FlightState, FlyingCase, Guidance, MarginPoint, fly};
+use rotor_flight::{FlightState, FlownCase, FlyingCase, Guidance, MarginPoint, fly};
 use rotor_study::case::{Case, FlightController, FlightValues, HandedSet, HandedT};
 use std::sync::Arc;
 
@@ -108,6 +108,32 @@ fn a_t_that_is_handed_in_meets_the_rotor_as_it_is() {
     }
 }
 
+/// A T of the wrong sign drives the rotor the wrong way at once: no phase, gain or speed is left, though one knot alone is known.
+#[test]
+fn a_t_of_the_wrong_sign_has_no_margins() {
+    let mut case = case();
+    let values = FlightValues { end_advance_ratio: 0.15, ..values(&[3]) };
+    let own = FlyingCase::new(&case, &values, &ideal()).unwrap();
+    let right = own.margins().unwrap().sets[0].points[0].clone();
+    let theory = (0.5 * own.margins().unwrap().gain).acos().to_degrees();
+    assert!((right.common_phase_deg - theory).abs() < 1.0, "{right:?}");
+    assert_eq!(right.holds_within, [None; 2]);
+    let state = FlightState { advance_ratio: 0.15, thrust_share: 0.0 };
+    let t = own.flight_at(&[3]).unwrap().identify(state).unwrap();
+    let columns = t.turned(-1.0, 0.0).unwrap().columns();
+    let set = HandedSet { harmonics: vec![3], advance_ratios: vec![0.15], columns: vec![columns] };
+    case.control.handed_t = Some(Arc::new(HandedT { sets: vec![set], ..HandedT::default() }));
+    let study = FlyingCase::new(&case, &values, &ideal()).unwrap().margins().unwrap();
+    let [point] = &study.sets[0].points[..] else { panic!("one knot") };
+    assert!((point.whole_step_radius[0] - 2.0).abs() < 2e-3, "{point:?}");
+    let phases = [point.common_phase_deg, point.common_overshoot_deg];
+    let phases = [&phases[..], &point.flap_overshoot_deg, &point.load_phase_deg].concat();
+    assert!(phases.iter().all(|deg| deg.to_bits() == 0), "{point:?}");
+    let gains = [&[point.common_gain][..], &point.load_gain].concat();
+    assert!(gains.iter().all(|gain| gain.to_bits() == 1.0_f64.to_bits()), "{point:?}");
+    assert_eq!(point.holds_within, [Some(0.15); 2]);
+}
+
 /// A weight of the change slows the loop, and the radius knows it: by `(1 - gain)` of the way without one, hardly at all with
 /// one that outweighs T. The flight takes the smaller steps.
 #[test]
@@ -134,19 +160,20 @@ fn draws_are_common_and_their_spread_is_that_of_the_flights() {
     let values = FlightValues { noise_percent: 3.0, duration_s: 6.0, knots: 2, ..values(&[3]) };
     let flying = FlyingCase::new(&case, &values, &actuator()).unwrap();
     let drawn = flying.draws(5, &|| ()).unwrap();
-    let flight = flying.flight_at(&[3]).unwrap();
-    let mut last: Vec<f64> = (0..5)
-        .map(|draw| {
-            let flight = Flight { seed: flight.seed + draw, ..flight.clone() };
-            fly(&flight, &Guidance::Fixed).unwrap().last().unwrap().cost_ratio
-        })
-        .collect();
-    last.sort_by(f64::total_cmp);
-    let fixed = &drawn.controllers[0];
-    assert_eq!(fixed.controller, "fixed");
-    let (_, spread) = fixed.cycles.last().unwrap();
-    assert_eq!(spread.map(f64::to_bits), [last[0], last[2], last[4]].map(f64::to_bits));
-    assert!(spread[0] < spread[2]);
-    assert_eq!(drawn.controllers[1].cycles.len(), fixed.cycles.len());
+    let seeded = (0..5).map(|draw| {
+        let values = FlightValues { seed: values.seed + draw, ..values.clone() };
+        FlyingCase::new(&case, &values, &actuator()).unwrap().fly(&|| ()).unwrap()
+    });
+    let seeded: Vec<FlownCase> = seeded.collect();
+    // the flights of the seeds, one by one, for either controller
+    for (k, (drawn, name)) in drawn.controllers.iter().zip(["fixed", "adaptive"]).enumerate() {
+        assert_eq!(drawn.controller, name);
+        let mut last: Vec<f64> =
+            seeded.iter().map(|flown| flown.flights[k].points.last().unwrap().cost_ratio).collect();
+        last.sort_by(f64::total_cmp);
+        let (_, spread) = drawn.cycles.last().unwrap();
+        assert_eq!(spread.map(f64::to_bits), [last[0], last[2], last[4]].map(f64::to_bits));
+        assert!(spread[0] < spread[2], "{name}: {spread:?}");
+    }
     assert!(flying.draws(0, &|| ()).is_err());
 }

@@ -187,10 +187,10 @@ fn marched(
     motions.iter().enumerate().map(|(turn, own)| of_turn(turn, own)).collect()
 }
 
-/// The same against the nonlinear rotor marched in time, in the last revolution of every cycle, whose loads close the loop: the
-/// loads are those of the flight to 2 % of `J0` as squares, and `J` once the control hardly changes any more. While it does, blades
-/// still ring from the change before, and `J` differs by more. With the flaps of the cycle before, or without one of their
-/// harmonics, loads are farther off.
+/// The same against the nonlinear rotor marched in time, in the last revolution of every cycle; the loop is closed by the mean of
+/// both that its window measures. The loads are those of the flight to 2 % of `J0` as squares, and `J` once the control hardly
+/// changes any more. While it does, blades still ring from the change before, and `J` differs by more. With the flaps of the cycle
+/// before, or without one of their harmonics, loads are farther off.
 #[test]
 fn loads_in_time_are_those_of_the_rotor_marched_in_time() {
     let (path, each) = all_flown();

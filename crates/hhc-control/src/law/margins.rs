@@ -3,7 +3,8 @@
 use crate::{ControlError, ControlLayout, Cost, FeedbackLaw, OperatingPoint, RelaxedStep, TMatrix};
 use std::ops::Range;
 
-/// The least error of T, one at a time, at which the spectral radius of (C.14) reaches 1 or the loads overshoot.
+/// The least error of the true T, one at a time, at which the spectral radius of (C.14) reaches 1 or the loads overshoot; 0 deg
+/// and a gain of 1 where they do without one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TMargins {
     /// Phase error common to all flaps, deg, the smaller of lag and lead; 180 where none diverges.
@@ -21,7 +22,8 @@ pub struct TMargins {
     pub flap_overshoot_deg: Vec<f64>,
 }
 
-/// The least error of one load in T, one at a time, at which the spectral radius of (C.14) reaches 1.
+/// The least error of one load in the true T, one at a time, at which the spectral radius of (C.14) reaches 1; 0 deg and a gain
+/// of 1 where it does without one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadMargin {
     /// Phase error, deg, the smaller of lag and lead; 180 where none diverges.
@@ -39,7 +41,7 @@ const OVERSHOOT_CYCLES: u32 = 40;
 const ROUNDING: f64 = 1e-9;
 
 impl FeedbackLaw {
-    /// The margins of the T of a law that flies with fixed cycles.
+    /// The margins of the T of a law that flies with fixed cycles where another one may be true.
     ///
     /// ```text
     /// | 1 - gain g exp(i phi) | = 1    for a common error with rho = 0:  cos phi = gain/2,  g = 2/gain
@@ -47,6 +49,7 @@ impl FeedbackLaw {
     /// | argument | meaning | unit | range |
     /// |---|---|---|---|
     /// | `layout` | of the controls of T | - | |
+    /// | `there` | the true T, which the errors turn; [`Self::t`] where the law knows it | 1/V | of the shape of T |
     /// | `step` | weights of control and change, held, and part of the way | 1/V^2, - | as [`RelaxedStep`] |
     /// | `baseline` | loads `Z0` without control | nondimensional | one per row of T |
     ///
@@ -58,21 +61,20 @@ impl FeedbackLaw {
     pub fn margins(
         &self,
         layout: &ControlLayout,
+        there: &TMatrix,
         step: RelaxedStep,
         baseline: &[f64],
     ) -> Result<TMargins, ControlError> {
         let controls = layout.len();
         crate::error::check_length("controls of T", self.shape().1, controls)?;
         let turned = |part: Range<usize>, size: &dyn Fn(&TMatrix) -> Result<f64, ControlError>| {
-            least_phase_deg(|phase_rad| {
-                size(&self.t().turned_within(part.clone(), 1.0, phase_rad)?)
-            })
+            least_phase_deg(|phase_rad| size(&there.turned_within(part.clone(), 1.0, phase_rad)?))
         };
-        let phase = |part| turned(part, &|there| self.relaxed_spectral_radius(step, there));
-        let overshoot = |part| turned(part, &|there| self.overshoot(step, there, baseline));
+        let phase = |part| turned(part, &|turned| self.relaxed_spectral_radius(step, turned));
+        let overshoot = |part| turned(part, &|turned| self.overshoot(step, turned, baseline));
         let largest = |part: Range<usize>| -> Result<f64, ControlError> {
             least_gain(|stronger| {
-                let stronger = self.t().turned_within(part.clone(), stronger, 0.0)?;
+                let stronger = there.turned_within(part.clone(), stronger, 0.0)?;
                 self.relaxed_spectral_radius(step, &stronger)
             })
         };
@@ -88,15 +90,20 @@ impl FeedbackLaw {
         })
     }
 
-    /// How wrong T may be in one load alone, whose cosine and sine are the rows `2 load` and `2 load + 1`. Arguments as
+    /// How wrong the true T may be in one load alone, whose cosine and sine are the rows `2 load` and `2 load + 1`. Arguments as
     /// [`Self::margins`].
     ///
     /// # Errors
     /// [`ControlError::OutOfRange`] for a load that T lacks; as [`Self::relaxed_spectral_radius`].
-    pub fn load_margin(&self, step: RelaxedStep, load: usize) -> Result<LoadMargin, ControlError> {
+    pub fn load_margin(
+        &self,
+        there: &TMatrix,
+        step: RelaxedStep,
+        load: usize,
+    ) -> Result<LoadMargin, ControlError> {
         let radius = |of_load: f64, phase_rad: f64| {
-            let there = self.t().with_load_turned(load, of_load, phase_rad)?;
-            self.relaxed_spectral_radius(step, &there)
+            let turned = there.with_load_turned(load, of_load, phase_rad)?;
+            self.relaxed_spectral_radius(step, &turned)
         };
         Ok(LoadMargin {
             phase_deg: least_phase_deg(|phase_rad| radius(1.0, phase_rad))?,
@@ -136,18 +143,21 @@ fn least_phase_deg(radius: impl Fn(f64) -> Result<f64, ControlError>) -> Result<
     Ok(sided(1.0)?.min(sided(-1.0)?))
 }
 
-/// The least gain above 1 at which a radius reaches 1; infinity for none up to the largest.
+/// The least gain of 1 or above at which a radius reaches 1; infinity for none up to the largest.
 fn least_gain(radius: impl Fn(f64) -> Result<f64, ControlError>) -> Result<f64, ControlError> {
     let found = first_crossing(LARGEST_GAIN.ln(), GAIN_STEPS, |log| radius(log.exp()))?;
     Ok(if found < LARGEST_GAIN.ln() { found.exp() } else { f64::INFINITY })
 }
 
-/// Where a radius first reaches 1 between 0 and `end`; `end` if nowhere.
+/// Where a radius first reaches 1 from 0 to `end`; `end` if nowhere.
 fn first_crossing(
     end: f64,
     steps: u32,
     radius: impl Fn(f64) -> Result<f64, ControlError>,
 ) -> Result<f64, ControlError> {
+    if radius(0.0)? >= 1.0 {
+        return Ok(0.0);
+    }
     let step = end / f64::from(steps);
     for k in 1..=steps {
         if radius(step * f64::from(k))? < 1.0 {

@@ -45,7 +45,7 @@ impl RelaxedSettings {
 ///
 /// ```text
 /// J   = Z'WZ + rho u'u + du' S du,      Z = Z_here + T du
-/// u   <-  u_here + g c ( argmin J  over |u_p| <= U_p  -  u_here ),      c: the largest change is at most the rate
+/// u   <-  u_here + min(g, c) ( argmin J  over |u_p| <= U_p  -  u_here ),   c: the largest change is at most the rate
 /// ```
 /// - Without a limit that binds, `du = -g (T'WT + rho I + S)^-1 (T'W Z + rho u)`.
 /// - The optimum keeps the amplitudes; it is never a clipped one. The rate only shortens the step: every part of the way

@@ -57,7 +57,7 @@ fn flown_margin(
 fn flights_diverge_where_the_radius_says() {
     for harmonic in [3, 4] {
         let (t, z0) = (SPEEDS[1].t(harmonic), SPEEDS[1].z0);
-        let margins = law(&t).margins(&layout(), RelaxedStep::of_gain(GAIN), &z0).unwrap();
+        let margins = law(&t).margins(&layout(), &t, RelaxedStep::of_gain(GAIN), &z0).unwrap();
         let theory = (GAIN / 2.0).acos().to_degrees();
         assert!((margins.common_phase_deg - theory).abs() < 1.0, "{margins:?}");
         assert!((margins.common_gain - 2.0 / GAIN).abs() < 1e-3, "{margins:?}");
@@ -83,7 +83,7 @@ fn flights_diverge_where_the_radius_says() {
         }
         // one load alone
         for load in [0, 2, 5] {
-            let margin = law(&t).load_margin(RelaxedStep::of_gain(GAIN), load).unwrap();
+            let margin = law(&t).load_margin(&t, RelaxedStep::of_gain(GAIN), load).unwrap();
             let sides = [1.0, -1.0].map(|side| {
                 flown_margin((0.5 * margin.phase_deg, 180.0), &z0, |deg| {
                     Ok([t.clone(), t.with_load_turned(load, 1.0, side * deg.to_radians())?])

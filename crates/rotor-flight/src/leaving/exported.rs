@@ -1,7 +1,7 @@
 //! T at the knots of a case as arrays with names and units, and its controllers to be written in other languages.
 
 use super::labels::{AFTER_STEP, POINT_AT, T_OF, control_labels, load_axis, load_labels};
-use super::settings::{self, inflow_note};
+use super::settings::{self, actuator_note, inflow_note};
 use crate::case_flight::{flight_of, guidance_of, path_of, ranged, unguided};
 use crate::{Flight, FlightError, FlightState, Guidance};
 use preisach_dyn::ActuatorModel;
@@ -119,6 +119,7 @@ fn notes(case: &Case, values: &FlightValues) -> Vec<String> {
     let mut notes = vec![
         "Z = Z0 + T u. Loads: cosine and sine of six hub loads in the fixed frame at the blade number per rev, X aft, Y starboard, Z up, over the units in `load_unit`. Controls: cosine and sine voltage of each flap at each harmonic, V; A cos(n psi - phase), psi = 0 over the tail.".to_owned(),
         inflow_note(case),
+        actuator_note(case),
         format!("T: central differences about zero control with {} V, flaps and bias settled in their hysteresis, all others at rest.", case.t_step_volt()),
     ];
     let noise = values.noise_percent;

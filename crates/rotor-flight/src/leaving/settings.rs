@@ -3,13 +3,16 @@
 
 use super::labels::load_labels;
 use rotor_export::{Axis, Document, LabelledArray};
-use rotor_study::case::{Case, InflowChoice, LoadScaleChoice, TInflowChoice};
+use rotor_study::case::{
+    ActuatorChoice, BiasChoice, Case, InflowChoice, LoadScaleChoice, TInflowChoice,
+};
 
 /// Names of the arrays.
 const SETTINGS: &str = "settings";
 const LOAD_WEIGHT: &str = "load_weight";
-/// How the note on the inflow begins.
+/// How the notes on the inflow and on the actuator begin.
 const INFLOW_NOTE: &str = "Inflow: ";
+const ACTUATOR_NOTE: &str = "Actuator: ";
 /// Difference of two numbers of the same meaning that is none, as a part of them.
 const ALIKE: f64 = 1e-9;
 
@@ -19,11 +22,14 @@ type Setting = (&'static str, &'static str, f64, &'static str);
 /// Conditions of T0 and limits of a case; those of the flight where there is one.
 fn of_case(case: &Case) -> Vec<Setting> {
     let (control, actuator) = (&case.control, &case.actuator);
+    let is_held = matches!(control.bias, BiasChoice::Fixed(_));
     let is_over_baseline = control.load_scale == LoadScaleChoice::Baseline;
     let thrust = case.trim.ct_sigma().map(|value| ("ct_sigma", "", value, "trim"));
     let all = [
         ("rotor_rpm", "1/min", case.rotor.omega_rpm, "rotor.omega_rpm"),
         ("step_V", "V", case.t_step_volt(), "control.t_step_deg"),
+        ("bench_rev_hz", "rev/s", actuator.bench_rev_hz, "actuator.bench_rev_hz"),
+        ("bias_held", "", f64::from(u8::from(is_held)), "control.bias"),
         ("bias_V", "V", control.drive_bias().volt(), "control.bias_V"),
         ("lowest_V", "V", actuator.range_volt.0, "actuator.range_V"),
         ("highest_V", "V", actuator.range_volt.1, "actuator.range_V"),
@@ -57,7 +63,7 @@ pub(super) fn arrays(case: &Case) -> [LabelledArray; 2] {
         labels: of(|own| own.0).collect(),
         units: of(|own| own.1).collect(),
     };
-    let meaning = "what T was found with and is limited by: thrust over solidity that is trimmed to, rotor speed, step of T, bias, range and full scale of the actuator, 1 where the weights are over the squared load without control, limits, rate weight and gain of the flight";
+    let meaning = "what T was found with and is limited by: thrust over solidity that is trimmed to, rotor speed, step of T, bench time of a revolution, 1 where the bias is held and 0 where it follows the mean flap angle, bias, range and full scale of the actuator, 1 where the weights are over the squared load without control, limits, rate weight and gain of the flight";
     let settings = LabelledArray::from_fn(SETTINGS, meaning, vec![axis], |i, _, _| all[i].2);
     let axis = Axis::of_unit("load", load_labels(case), "");
     let weights = weights(case);
@@ -82,6 +88,18 @@ pub(super) fn inflow_note(case: &Case) -> String {
         }
     };
     format!("{INFLOW_NOTE}{inflow}; in T it is {in_t}. Pilot controls are held in T.")
+}
+
+/// The actuator that a case names.
+pub(super) fn actuator_note(case: &Case) -> String {
+    let actuator = match &case.actuator.model {
+        ActuatorChoice::Ideal => {
+            format!("Ideal, {} deg at full scale", case.actuator.ideal_amplitude_deg)
+        }
+        ActuatorChoice::Bench(own) => format!("Bench, data set `{}`", own.dataset),
+        ActuatorChoice::File(own) => format!("File, `{}`", own.path),
+    };
+    format!("{ACTUATOR_NOTE}{actuator}.")
 }
 
 /// What a document says otherwise than a case, in sentences; that it says nothing where it does.
@@ -115,10 +133,12 @@ pub(super) fn mismatches(case: &Case, document: &Document) -> Vec<String> {
         .zip(weights(case))
         .step_by(2)
         .filter_map(|(label, own)| differs(weight, label, own, "control.load_weights"));
-    let own = inflow_note(case);
-    let found = document.notes.iter().find(|note| note.starts_with(INFLOW_NOTE));
-    let inflow = found.filter(|note| **note != own).map(|found| {
-        format!("The T that is handed in was found otherwise. {found} The case has: {own}")
+    let notes = [(INFLOW_NOTE, inflow_note(case)), (ACTUATOR_NOTE, actuator_note(case))];
+    let notes = notes.into_iter().filter_map(|(start, own)| {
+        let found = document.notes.iter().find(|note| note.starts_with(start))?;
+        (**found != own).then(|| {
+            format!("The T that is handed in was found otherwise. {found} The case has: {own}")
+        })
     });
-    settings.chain(weights).chain(inflow).collect()
+    settings.chain(weights).chain(notes).collect()
 }

@@ -21,7 +21,7 @@ fn looks<'a>(series: impl IntoIterator<Item = &'a Series>) -> Markup {
     legend(&lines.map(|own| own.look.clone()).collect::<Vec<_>>())
 }
 
-/// Least, median and largest `J / J0` of the draws against time, a picture for each controller.
+/// `J / J0` that 5, 50 and 95 % of the draws lie at or below against time, a picture for each controller.
 pub fn draws_pictures(drawn: &DrawnCase) -> Vec<Markup> {
     let lines = |own: &DrawnController| -> Vec<Series> {
         let names = ["5 % of the draws", "median", "95 %"];

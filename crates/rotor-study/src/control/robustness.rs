@@ -324,6 +324,17 @@ impl<'a> Flights<'a> {
         disturbance: &Disturbance,
         seed: u64,
     ) -> Result<Vec<f64>, RunError<PlantError>> {
+        self.fly_seen(known, disturbance, seed, &mut |_| ())
+    }
+
+    /// The same; `seen` is handed the loads of every cycle as they are measured.
+    fn fly_seen(
+        &self,
+        known: Known,
+        disturbance: &Disturbance,
+        seed: u64,
+        seen: &mut dyn FnMut(&[f64]),
+    ) -> Result<Vec<f64>, RunError<PlantError>> {
         let noise = 0.01 * disturbance.noise_percent * self.rms;
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut start = self.baseline.clone();
@@ -339,6 +350,7 @@ impl<'a> Flights<'a> {
                 .outputs;
             ratios.push(self.cost(&outputs) / before);
             add_noise(&mut outputs[..HUB_OUTPUTS], noise, &mut random);
+            seen(&outputs);
             flying.step(&outputs)?;
             left *= 1.0 - 0.01 * disturbance.drift_percent;
         }
@@ -378,7 +390,7 @@ impl<'a> Flights<'a> {
     fn margins(&self) -> Result<MarginLine, ControlError> {
         let law = FeedbackLaw::new(&self.t0, &self.settings.load_weights)?;
         let layout = self.plant.layout();
-        let found = law.margins(layout, self.settings.step(), &self.baseline)?;
+        let found = law.margins(layout, law.t(), self.settings.step(), &self.baseline)?;
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             condition: law.condition(),

@@ -76,9 +76,29 @@ fn controllers_share_their_noise() {
         let cell = flights.cell(Known::Fixed, noisy, &|| ()).unwrap();
         assert_eq!((cell.draws, cell.cycles), (DRAWS, CYCLES));
         assert!(cell.end_range[0] < cell.end_ratio && cell.end_ratio < cell.end_range[1]);
-        // the first step of both has the same noise behind it
-        let first = |name| flights.fly(name, &noisy, SEED).unwrap()[0];
-        assert_eq!(first(Known::Fixed).to_bits(), first(Known::Estimated).to_bits());
+        // at zero control all measure the same to the last bit, noise with it, and other loads under another seed
+        let first = |name, seed| {
+            let mut first = Vec::new();
+            let mut seen = |loads: &[f64]| {
+                if first.is_empty() {
+                    first.extend(loads.iter().map(|load| load.to_bits()));
+                }
+            };
+            flights.fly_seen(name, &noisy, seed, &mut seen).unwrap();
+            first
+        };
+        let own = first(Known::Fixed, SEED);
+        assert_eq!(own, first(Known::Estimated, SEED));
+        assert_eq!(own, first(Known::NoiseTold, SEED));
+        assert_ne!(own, first(Known::Fixed, SEED + 1));
+        // and the draws of another controller's cell are flights of the same seeds
+        let cell = flights.cell(Known::Estimated, noisy, &|| ()).unwrap();
+        let ends: Vec<f64> = (SEED..SEED + DRAWS as u64)
+            .map(|seed| end(&flights.fly(Known::Estimated, &noisy, seed).unwrap()))
+            .collect();
+        let least = ends.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = ends.iter().copied().fold(0.0, f64::max);
+        assert_eq!(cell.end_range.map(f64::to_bits), [least, largest].map(f64::to_bits));
         let margins = flights.margins().unwrap();
         let theory = (GAIN / 2.0).acos().to_degrees();
         assert!((margins.common_phase_deg - theory).abs() < 1.0, "{margins:?}");
