@@ -232,7 +232,9 @@ fn identify_replaces_actuator_files_only() {
     assert!(place.read("bench.ron").contains("kind: Actuator"));
     place.hhc(&unnamed).done();
     place.write("bench.html", "mine");
-    place.hhc(&unnamed).rejected(&["bench.html exists already and is no file of kind page of hhc", "--force"]);
+    place
+        .hhc(&unnamed)
+        .rejected(&["bench.html exists already and is no file of kind page of hhc", "--force"]);
     place.write("bench.ron", "(title: \"mine, by hand\")");
     place.hhc(&unnamed).rejected(&["bench.ron exists already and is no file of kind Actuator"]);
     assert_eq!(place.read("bench.ron"), "(title: \"mine, by hand\")");
