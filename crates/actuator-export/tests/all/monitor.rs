@@ -90,7 +90,8 @@ fn rows(watched: &[Watched]) -> Vec<f64> {
 /// A history with a measurement that is none, and what Rust makes of it.
 fn history(folder: &Path, target: Target) -> Vec<f64> {
     let models = models();
-    let watch = monitor(&models);
+    // short enough that the cause is forgotten when its contrary ends
+    let watch = Monitor { memory_s: 0.05, ..monitor(&models) };
     let volts = volts();
     let mut angles = measured(&models[1]);
     angles[100] = f64::NAN;
@@ -106,7 +107,11 @@ fn history(folder: &Path, target: Target) -> Vec<f64> {
     }
     write_numbers(&folder.join("volts"), &volts);
     write_numbers(&folder.join("angles"), &angles);
-    rows(&watch.watch(&volts, &angles, STEP_S).unwrap())
+    let watched = watch.watch(&volts, &angles, STEP_S).unwrap();
+    let is_contrary =
+        |w: &Watched| w.amount < 0.0 && w.left_deg <= watch.threshold_deg && w.seen == Seen::Other;
+    assert!(watched.iter().any(is_contrary), "{:?}", watched.last());
+    rows(&watched)
 }
 
 #[test]
