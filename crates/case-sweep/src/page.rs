@@ -321,7 +321,7 @@ mod tests {
     fn the_lines_are_of_what_every_case_has() {
         let lines = |merged: &Merged| -> usize {
             let page = merged.page("S", &PageChoice::default()).unwrap();
-            let values = page.split("parcoords").nth(1).unwrap().split("\"values\":[").nth(1);
+            let values = page.split("\"dimensions\":").nth(1).unwrap().split("\"values\":[").nth(1);
             values.unwrap().split(']').next().unwrap().split(',').filter(|v| !v.is_empty()).count()
         };
         let whole = merged();
