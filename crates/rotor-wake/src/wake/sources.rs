@@ -293,7 +293,7 @@ impl Sources {
     pub(crate) fn of_geometry(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
         let core = &context.settings.core;
         let free = context.settings.near_wake_motion == NearWakeMotion::Free;
-        let mut out = Self::with_room(views, context);
+        let mut out = Self::default();
         for view in views {
             out.bound(view, context);
             if free {
@@ -309,7 +309,7 @@ impl Sources {
         out
     }
 
-    /// None yet, with room for all that the blades and their wakes can have.
+    /// None yet, with room for all that the blades feel.
     fn with_room(views: &[BladeView<'_>], context: &SourceContext<'_>) -> Self {
         let SourceContext { settings, .. } = context;
         let of = |BladeView { line, near, far, .. }: &BladeView<'_>| {

@@ -73,7 +73,7 @@ fn of_points(
     let found = found?;
     write_texts(output, found.files()?)?;
     for note in &found.diagnosis.notes {
-        say(&format_args!("{note}"));
+        say(note);
     }
     print(&PointStory::of(&found.diagnosis).render(form)?)
 }

@@ -274,32 +274,12 @@ fn a_named_cause_leaves_as_its_monitor() {
     with(&long).rejected(&["the memory of the monitor is 100000000000000000 s, expected at most"]);
     let alone = ["export", "worn.ron", "--to", "c", "-o", "w", "--memory-s", "2"];
     place.hhc(&alone).rejected(&["--monitor"]);
-    let args = [
-        "export",
-        "worn.ron",
-        "--to",
-        "c",
-        "-o",
-        "w",
-        "--threshold-deg",
-        "1",
-        "--monitor",
-        "Delay",
-    ];
-    place.hhc(&args).rejected(&["there is no stage `Delay` among those of the actuator: Backlash"]);
+    let rest = ["-o", "w", "--threshold-deg", "1", "--monitor", "Delay"];
+    let delayed = |of: [&str; 4]| place.hhc(&[&of[..], &rest].concat());
+    delayed(["export", "worn.ron", "--to", "c"])
+        .rejected(&["there is no stage `Delay` among those of the actuator: Backlash"]);
     place.write("case.ron", QUICK_CASE);
-    let args = [
-        "export",
-        "case.ron",
-        "--to",
-        "json",
-        "-o",
-        "w",
-        "--threshold-deg",
-        "1",
-        "--monitor",
-        "Delay",
-    ];
-    place.hhc(&args).rejected(&["`--monitor` watches an actuator and this is a case"]);
+    delayed(["export", "case.ron", "--to", "json"])
+        .rejected(&["`--monitor` watches an actuator and this is a case"]);
     assert_eq!(place.listing(), ["case.ron", "worn.ron"], "nothing is written");
 }
