@@ -1,6 +1,7 @@
 //! What the load at one azimuth feels of the motion at all others, in the Newton matrix.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use crate::TimeElements;
 
@@ -37,29 +38,33 @@ impl OrbitMemory {
         let (points, nodes) = (time.points().len(), time.unknowns_per_dof());
         let dof = self.dq.nrows() / points;
         let gauss = time.gauss_per_element();
-        let mut at_points = DMatrix::zeros(dof * points, dof * nodes);
+        let at = |p: usize| {
+            let shapes = time.shapes(p % gauss).iter().enumerate();
+            shapes.map(move |(a, shape)| (time.node(p / gauss, a), shape))
+        };
         let mut weak = DMatrix::zeros(dof * nodes, dof * nodes);
-        for p in 0..points {
-            for (b, [n, d, _]) in time.shapes(p % gauss).iter().enumerate() {
-                let node = time.node(p / gauss, b);
-                for j in 0..dof {
-                    let mut column = at_points.column_mut(node * dof + j);
-                    column.axpy(*n, &self.dq.column(p * dof + j), 1.0);
-                    column.axpy(*d, &self.dqd.column(p * dof + j), 1.0);
-                }
-            }
-        }
-        for (load, mut column) in at_points.column_iter().zip(weak.column_iter_mut()) {
-            for p in 0..points {
-                let weight = time.weights()[p];
-                for (a, [test, ..]) in time.shapes(p % gauss).iter().enumerate() {
-                    let node = time.node(p / gauss, a);
-                    for i in 0..dof {
-                        column[node * dof + i] += weight * test * load[p * dof + i];
+        let columns = weak.as_mut_slice().par_chunks_mut(dof * nodes).enumerate();
+        columns.for_each_init(
+            || DVector::zeros(dof * points),
+            |load, (unknown, column)| {
+                load.fill(0.0);
+                for p in 0..points {
+                    for (_, [n, d, _]) in at(p).filter(|(node, _)| *node == unknown / dof) {
+                        load.axpy(*n, &self.dq.column(p * dof + unknown % dof), 1.0);
+                        load.axpy(*d, &self.dqd.column(p * dof + unknown % dof), 1.0);
                     }
                 }
-            }
-        }
+                for p in 0..points {
+                    let load = &load.as_slice()[p * dof..(p + 1) * dof];
+                    for (node, [test, ..]) in at(p) {
+                        let sums = &mut column[node * dof..(node + 1) * dof];
+                        for (sum, load) in sums.iter_mut().zip(load) {
+                            *sum += time.weights()[p] * test * load;
+                        }
+                    }
+                }
+            },
+        );
         weak
     }
 }

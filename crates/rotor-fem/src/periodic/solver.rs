@@ -230,7 +230,9 @@ impl PeriodicSolver {
             state = match renewal.judge(growth) {
                 Verdict::Accept => {
                     self.factorisation = renewal.keeps().then_some(factorisation);
-                    next?
+                    let next = next?;
+                    system.recycle(state.seen, work);
+                    next
                 }
                 Verdict::Shorten => {
                     self.factorisation = renewal.keeps().then_some(factorisation);
@@ -435,7 +437,7 @@ impl PeriodicSolver {
                 let (found, expected) = (matrix.len(), size * size);
                 return Err(PeriodicError::Shape { what, found, expected });
             }
-            if let Some(entry) = matrix.iter().position(|v| !v.is_finite()) {
+            if let Some(entry) = matrix.as_slice().iter().position(|v| !v.is_finite()) {
                 let row = entry % size;
                 return Err(PeriodicError::NotFinite {
                     iteration,

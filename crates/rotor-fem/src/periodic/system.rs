@@ -59,6 +59,11 @@ pub trait PeriodicSystem: Sync {
         out: &mut DMatrix<f64>,
     ) -> Result<Self::Seen, Self::Error>;
 
+    /// Takes back what it has told of an orbit that is no longer wanted, for its arrays to be used again.
+    fn recycle(&self, seen: Self::Seen, work: &mut Self::Work) {
+        let _ = (seen, work);
+    }
+
     /// Approximate local linearisation of `f` at every point, used for the Newton matrix only.
     ///
     /// # Errors

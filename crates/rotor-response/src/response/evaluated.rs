@@ -32,6 +32,8 @@ impl Revolution {
 pub(crate) struct Work {
     pub(super) rows: ModalRows,
     pub(super) foreshortening: Foreshortening,
+    /// Loads of a revolution that is no longer wanted.
+    pub(super) sections: Vec<SectionLoads<Lanes>>,
     pub(super) together: Vec<StationWork>,
 }
 

@@ -43,12 +43,14 @@ impl ResponseSystem<'_> {
         out: Option<&mut DMatrix<f64>>,
     ) -> Result<Revolution, ResponseError> {
         let (blade, points) = (self.blade, self.points.len());
-        let Work { rows, foreshortening, together } = work;
+        let Work { rows, foreshortening, sections, together } = work;
         rows.fill(samples);
         foreshortening.fill(blade, self.couplings, rows);
         let stations = blade.grid.len();
         let (blocks, lanes) = (self.blocks.len(), rows.lanes());
-        let mut sections = vec![SectionLoads::default(); stations * blocks];
+        let mut sections = std::mem::take(sections);
+        sections.clear();
+        sections.resize(stations * blocks, SectionLoads::default());
         together.resize_with(stations.div_ceil(STATIONS_TOGETHER), StationWork::default);
         let law = lags.map(|lags| LoadLaw { lags, ..self.load_law() });
         let summed = out.is_some() && blade.modal.is_none();

@@ -289,6 +289,10 @@ impl PeriodicSystem for ResponseSystem<'_> {
         self.evaluate(samples, Some(Lags::Followed), work, Some(out))
     }
 
+    fn recycle(&self, seen: Revolution, work: &mut Work) {
+        work.sections = seen.sections;
+    }
+
     fn tangents(&self, samples: &OrbitSamples) -> Result<Vec<LocalTangent>, Self::Error> {
         self.tangents_by_differences(samples)
     }

@@ -144,7 +144,7 @@ impl RotorSolver {
             blade.modal_masses[mode] * (blade.frequencies[mode].powi(2) - n * n)
         }));
         let mut read = DMatrix::zeros(count, azimuths * panels.len());
-        for (s, slope) in slopes.iter().enumerate() {
+        let of_station = |(s, slope): (usize, &DMatrix<f64>)| {
             let at = first + s;
             let lift = weight[at] * air[at].density_chord / air[at].chord;
             let projected = DMatrix::from_fn(count, azimuths, |c, i| {
@@ -155,8 +155,13 @@ impl RotorSolver {
             });
             let answer = projected * slope;
             let felt = DMatrix::from_fn(azimuths, count, |i, c| felt_by(i, c, &|shape| shape[at]));
-            stiffness -= &answer * felt;
-            for (to, share) in shares(panels, x[at]) {
+            let work = &answer * felt;
+            (answer, work)
+        };
+        let stations: Vec<_> = slopes.par_iter().enumerate().map(of_station).collect();
+        for (s, (answer, work)) in stations.iter().enumerate() {
+            stiffness -= work;
+            for (to, share) in shares(panels, x[first + s]) {
                 for (i, column) in answer.column_iter().enumerate() {
                     read.column_mut(i * panels.len() + to).axpy(share, &column, 1.0);
                 }

@@ -14,11 +14,15 @@ use crate::kernel::{BLOCK, TakeVelocity, for_each_velocity};
 use crate::vector::{Vec3, add, norm, scale, sub};
 use crate::{CirculationMap, InflowMap, WakeRotor};
 use crate::{FlightState, InducedInflow, InflowModel, RotorLoading, WakeError};
-use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
-use nalgebra::{DMatrix, DVector};
+use faer::{Mat, MatRef};
+use nalgebra::{DMatrix, DMatrixViewMut, DVector};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Rows, or columns, of Newton's matrix that one thread takes together.
+const ROWS_TOGETHER: usize = 128;
 
 /// Induced velocity at the control points of all panels and azimuths per unit of circulation at all panels
 /// and azimuths, for one geometry of the wake.
@@ -286,20 +290,97 @@ impl CirculationSlope {
         }
         // panel by panel, for the blocks are of panels
         let azimuths = felt.len() / panels.max(1);
-        let at = |panel: usize, azimuth: usize| panel * azimuths + azimuth;
+        let turned = |values: &[f64], (rows, columns): (usize, usize)| -> Vec<f64> {
+            let row = |row| (0..columns).map(move |column| values[column * rows + row]);
+            (0..rows).flat_map(row).collect()
+        };
+        let inflow = turned(inflow.as_slice(), (panels, azimuths));
         let mut of_panels = vec![0.0; felt.len()];
-        for (from, to, block) in &self.blocks {
-            let sums = &mut of_panels[at(*from, 0)..at(*from + 1, 0)];
-            for (k, column) in block.column_iter().enumerate() {
-                let change = inflow[k * panels + to];
-                for (sum, slope) in sums.iter_mut().zip(&column) {
+        let (blocks, out) = (&self.blocks, &mut of_panels);
+        Arch::new().dispatch(PanelSums { blocks, azimuths, inflow: &inflow, out });
+        turned(&of_panels, (azimuths, panels))
+    }
+}
+
+/// What every panel answers: a type of its own, for a closure would be called, not inlined, by the function that is
+/// compiled for the vector unit.
+struct PanelSums<'a> {
+    blocks: &'a [(usize, usize, DMatrix<f64>)],
+    azimuths: usize,
+    /// At all azimuths of one panel, then of the next; so are the sums.
+    inflow: &'a [f64],
+    out: &'a mut [f64],
+}
+
+impl WithSimd for PanelSums<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { blocks, azimuths, inflow, out } = self;
+        let of = |panel: usize| panel * azimuths..(panel + 1) * azimuths;
+        for (from, to, block) in blocks {
+            let sums = &mut out[of(*from)];
+            let columns = block.as_slice().chunks_exact(azimuths);
+            for (column, change) in columns.zip(&inflow[of(*to)]) {
+                for (sum, slope) in sums.iter_mut().zip(column) {
                     *sum += slope * change;
                 }
             }
         }
-        let order = (0..azimuths).flat_map(|k| (0..panels).map(move |panel| at(panel, k)));
-        order.map(|at| of_panels[at]).collect()
     }
+}
+
+/// `I - (A - theta B) C'` of [`FrozenWake::new`], from `A - theta B`.
+///
+/// Threads share columns and rows in parts of a fixed size, so that no sum depends on their number.
+fn newton_matrix(
+    map: &DMatrix<f32>,
+    slope: &CirculationSlope,
+    (azimuths, panels): (usize, usize),
+) -> Result<DMatrix<f32>, WakeError> {
+    let (size, single) = (azimuths * panels, |matrix: &DMatrix<f64>| matrix.map(|x| x as f32));
+    for (from, to, block) in &slope.blocks {
+        let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);
+        let expected = "azimuths and panels of the wake";
+        ensure(fits, "order of a slope of the circulation", block.nrows() as f64, expected)?;
+    }
+    let of_panel = |to: usize| {
+        let mut answer = DMatrix::zeros(size, azimuths);
+        for (from, _, block) in slope.blocks.iter().filter(|(_, of, _)| *of == to) {
+            let down = map.columns_with_step(*from, azimuths, panels - 1);
+            answer.gemm(-1.0, &down, &single(block), 1.0);
+        }
+        answer
+    };
+    let answers: Vec<DMatrix<f32>> = (0..panels).into_par_iter().map(of_panel).collect();
+    let mut newton = DMatrix::from_fn(size, size, |row, column| {
+        answers[column % panels][(row, column / panels)] + f32::from(u8::from(row == column))
+    });
+    let Some(MotionSlope { coordinates, inflow }) = &slope.motion else { return Ok(newton) };
+    let fits = coordinates.shape() == (inflow.ncols(), inflow.nrows());
+    let (found, expected) = (inflow.nrows(), "azimuths times panels of the wake");
+    ensure(fits && found == size, "order of a slope of the motion", found as f64, expected)?;
+    let (coordinates, inflow) = (single(coordinates), single(inflow));
+    let mut answered = inflow.clone();
+    let rows_from = |first: usize| {
+        let rows = ROWS_TOGETHER.min(size - first);
+        let mut part = inflow.rows(first, rows).into_owned();
+        part.gemm(-1.0, &newton.rows(first, rows), &inflow, 1.0);
+        (first, part)
+    };
+    let firsts: Vec<usize> = (0..size).step_by(ROWS_TOGETHER).collect();
+    let parts: Vec<(usize, DMatrix<f32>)> = firsts.into_par_iter().map(rows_from).collect();
+    for (first, part) in parts {
+        answered.rows_mut(first, part.nrows()).copy_from(&part);
+    }
+    let columns = newton.as_mut_slice().par_chunks_mut(size * ROWS_TOGETHER).enumerate();
+    columns.for_each(|(part, columns)| {
+        let mut columns = DMatrixViewMut::from_slice(columns, size, columns.len() / size);
+        let of = coordinates.columns(part * ROWS_TOGETHER, columns.ncols());
+        columns.gemm(-1.0, &answered, &of, 1.0);
+    });
+    Ok(newton)
 }
 
 /// An inflow model: the wake as it is, carrying whatever circulation the blades have.
@@ -343,28 +424,8 @@ impl FrozenWake {
             expected,
         )?;
         let map = induction.down.less(&induction.along, &slope.pitch_rad);
-        let mut newton = DMatrix::identity(size, size);
-        for (from, to, block) in &slope.blocks {
-            let fits = *from.max(to) < panels && block.shape() == (azimuths, azimuths);
-            let expected = "azimuths and panels of the wake";
-            ensure(fits, "order of a slope of the circulation", block.nrows() as f64, expected)?;
-            let down = map.columns_with_step(*from, azimuths, panels - 1);
-            newton.columns_with_step_mut(*to, azimuths, panels - 1).gemm(-1.0, &down, block, 1.0);
-        }
-        if let Some(MotionSlope { coordinates, inflow }) = &slope.motion {
-            let fits = coordinates.shape() == (inflow.ncols(), inflow.nrows());
-            let expected = "azimuths times panels of the wake";
-            let found = inflow.nrows();
-            ensure(
-                fits && found == size,
-                "order of a slope of the motion",
-                found as f64,
-                expected,
-            )?;
-            let answered = inflow - &newton * inflow;
-            newton.gemm(-1.0, &answered, coordinates, 1.0);
-        }
-        let newton = Mat::from_fn(size, size, |row, column| newton[(row, column)] as f32);
+        let newton = newton_matrix(&map, slope, (azimuths, panels))?;
+        let newton = MatRef::from_column_major_slice(newton.as_slice(), size, size);
         let newton = Arc::new(newton.partial_piv_lu());
         let slope = Arc::new(slope.clone());
         Ok(Self { newton, slope, induction: Arc::new(induction), reference })

@@ -1,9 +1,13 @@
 //! A linear map kept as the kernel fills it: blocks of rows whose values stand side by side.
 
 #![expect(clippy::inline_always, reason = "only what is inlined is compiled for the vector unit")]
+#![expect(
+    clippy::cast_possible_truncation,
+    reason = "single precision is what is asked for a step"
+)]
 
 use crate::kernel::BLOCK;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, RealField};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -66,23 +70,23 @@ impl RowBlocks {
         self.column_by_column(|block, column, _| self.0[block].columns[column])
     }
 
-    /// The same less each row of another map in the same blocks times a factor of the row.
-    pub(super) fn less(&self, other: &Self, factors: &[f64]) -> DMatrix<f64> {
+    /// The same less each row of another map in the same blocks times a factor of the row, in single precision.
+    pub(super) fn less(&self, other: &Self, factors: &[f64]) -> DMatrix<f32> {
         self.column_by_column(|block, column, rows| {
             let mut values = self.0[block].columns[column];
             let less = other.0[block].columns[column].iter().zip(rows);
             for (value, (less, &row)) in values.iter_mut().zip(less) {
                 *value -= less * factors[row];
             }
-            values
+            values.map(|value| value as f32)
         })
     }
 
     /// A matrix whose values at the rows of a block and at a column are given.
-    fn column_by_column(
+    fn column_by_column<T: RealField>(
         &self,
-        values: impl Fn(usize, usize, &[usize]) -> [f64; BLOCK] + Sync,
-    ) -> DMatrix<f64> {
+        values: impl Fn(usize, usize, &[usize]) -> [T; BLOCK] + Sync,
+    ) -> DMatrix<T> {
         let size = self.order();
         let mut matrix = DMatrix::zeros(size, size);
         let columns = matrix.as_mut_slice().par_chunks_mut(size.max(1)).enumerate();
@@ -161,8 +165,9 @@ mod tests {
         let other = RowBlocks::from_fn(size, value);
         assert_eq!(other.matrix(), matrix);
         let weights: Vec<f64> = (0..size).map(|k| (k as f64).cos()).collect();
-        let less =
-            |row: usize, column: usize| value(row, column) - value(row, column) * weights[row];
+        let less = |row: usize, column: usize| {
+            (value(row, column) - value(row, column) * weights[row]) as f32
+        };
         assert_eq!(other.less(&other, &weights), DMatrix::from_fn(size, size, less));
         let factors: Vec<f64> = (0..size).map(|k| 0.3 - 0.02 * k as f64).collect();
         let expected = &matrix * nalgebra::DVector::from_column_slice(&factors);
