@@ -1,4 +1,4 @@
-//! The regression sweep: the whole program at 24 conditions with Drees's inflow and one in a free wake, against golden
+//! The regression sweep: the whole program at 24 conditions with Drees's inflow and five in a free wake, against golden
 //! values.
 //!
 //! A golden is kept for what has no exact answer. Each channel is compared with a tolerance relative
@@ -20,8 +20,8 @@ pub use filter::Filter;
 pub use snapshot::{GUARDED_CHANGE, Group, Snapshot, Tolerance};
 pub use source::{Program, SweepError};
 pub use sweep::{
-    ADVANCE_RATIOS, FREE_WAKE_POINT, HARMONICS_PER_REV, HUB_LOADS, SweepInflow, SweepPoint,
-    SweepResult, TrimChannels, all_points,
+    ADVANCE_RATIOS, FREE_WAKE_ADVANCE_RATIOS, FREE_WAKE_HARMONIC_PER_REV, HARMONICS_PER_REV,
+    HUB_LOADS, SweepInflow, SweepPoint, SweepResult, TrimChannels, all_points,
 };
 
 use crate::XtaskError;

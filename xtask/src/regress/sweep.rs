@@ -25,9 +25,11 @@ pub enum SweepInflow {
     FreeWake,
 }
 
-/// The case that flies in a free wake as well.
-pub const FREE_WAKE_POINT: SweepPoint =
-    SweepPoint { advance_ratio: 0.30, harmonic_per_rev: 4, inflow: SweepInflow::FreeWake };
+/// Harmonic of the control, per rev, that is flown in a free wake as well.
+pub const FREE_WAKE_HARMONIC_PER_REV: u32 = 4;
+
+/// Advance ratios at which it is: at 0.10 the wake of the defaults does not settle, and no number of it is kept.
+pub const FREE_WAKE_ADVANCE_RATIOS: [f64; 5] = [0.15, 0.20, 0.25, 0.30, 0.35];
 
 /// One case of the sweep.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,16 +64,20 @@ impl fmt::Display for SweepPoint {
     }
 }
 
-/// All cases, advance ratio by advance ratio, and the one in a free wake.
+/// All cases, advance ratio by advance ratio: those with Drees's inflow, then those in a free wake.
 pub fn all_points() -> Vec<SweepPoint> {
-    let of = |advance_ratio| {
-        HARMONICS_PER_REV.into_iter().map(move |harmonic_per_rev| SweepPoint {
-            advance_ratio,
-            harmonic_per_rev,
-            inflow: SweepInflow::Drees,
-        })
+    let of = |inflow, advance_ratios: &'static [f64], harmonics: &'static [u32]| {
+        let at = move |&advance_ratio| {
+            let point =
+                move |&harmonic_per_rev| SweepPoint { advance_ratio, harmonic_per_rev, inflow };
+            harmonics.iter().map(point)
+        };
+        advance_ratios.iter().flat_map(at)
     };
-    ADVANCE_RATIOS.into_iter().flat_map(of).chain([FREE_WAKE_POINT]).collect()
+    let in_wake = &[FREE_WAKE_HARMONIC_PER_REV];
+    of(SweepInflow::Drees, &ADVANCE_RATIOS, &HARMONICS_PER_REV)
+        .chain(of(SweepInflow::FreeWake, &FREE_WAKE_ADVANCE_RATIOS, in_wake))
+        .collect()
 }
 
 /// Trim of a case.
