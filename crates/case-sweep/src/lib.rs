@@ -81,6 +81,11 @@ pub trait Runner: Sync {
     /// Version of the model, part of every key: other versions give other numbers.
     fn version(&self) -> &str;
 
+    /// The folder that paths of a case start from, as messages show it before a name of a file; empty for none.
+    fn folder(&self) -> String {
+        String::new()
+    }
+
     /// Reads a case.
     ///
     /// # Errors

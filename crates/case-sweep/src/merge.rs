@@ -75,7 +75,7 @@ fn of_members<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, Cell)>,
 /// [`SweepError::Incomplete`] with the results that are missing, damaged or of no case, unless `partial` leaves them out.
 pub fn merge(plan: &Plan, store: &Store, partial: bool) -> Result<Merged, SweepError> {
     if !partial {
-        let faults = faults(&status(store, plan));
+        let faults = faults(&status(store, plan), plan);
         if !faults.is_empty() {
             return Err(SweepError::Incomplete(faults));
         }
@@ -102,11 +102,21 @@ pub fn merge(plan: &Plan, store: &Store, partial: bool) -> Result<Merged, SweepE
 }
 
 /// What keeps a sweep from being merged, in words.
-fn faults(status: &Status) -> Vec<String> {
+fn faults(status: &Status, plan: &Plan) -> Vec<String> {
+    // a key tells nobody which case it is
+    let which = |key: &String| {
+        let place = plan.cases.iter().position(|case| case.key == *key);
+        let case = place.map(|i| (i + 1, plan.fields.iter().zip(&plan.cases[i].values)));
+        case.map_or_else(String::new, |(number, values)| {
+            let values: Vec<String> = values.map(|(f, value)| format!("{f} {value}")).collect();
+            format!("case {number}, {}: ", values.join(", "))
+        })
+    };
     let named = |list: &[String], what: &str, remedy: &str| {
         let more = list.len().saturating_sub(NAMED);
         let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
-        let first: Vec<&str> = list.iter().take(NAMED).map(String::as_str).collect();
+        let first: Vec<String> =
+            list.iter().take(NAMED).map(|key| format!("{}{key}", which(key))).collect();
         let said = format!("{what}: {}; {remedy}\n  {}{more}", list.len(), first.join("\n  "));
         (!list.is_empty()).then_some(said)
     };

@@ -76,7 +76,7 @@ pub fn run<R: Runner>(
     runner: &R,
     done: &(dyn Fn(Done) + Sync),
 ) -> Result<Ran, SweepError> {
-    let part = shard.part(plan.distinct());
+    let part = shard.part(plan.distinct(), |case| &case.key);
     let mut ran = Ran { cases: part.len(), ..Ran::default() };
     let mut open: Vec<&PlannedCase> = Vec::new();
     for case in part {
@@ -161,9 +161,15 @@ fn run_case<R: Runner>(
     };
     let ReadCase { canonical, inputs, case } = read()?;
     let found = catch_unwind(AssertUnwindSafe(|| runner.run(case)));
+    // names of files as the case says them: a result does not depend on where its folder lies and how a path was typed
+    let folder = runner.folder();
+    let as_in_case = |said: String| without_folder(&said, &folder);
     let outcome = match found {
-        Ok(Ok(Found { columns, warnings })) => Outcome::Found { columns, warnings },
-        Ok(Err(NoNumbers::Failed(reason))) => Outcome::Failed { reason },
+        Ok(Ok(Found { columns, warnings })) => {
+            let warnings = warnings.into_iter().map(as_in_case).collect();
+            Outcome::Found { columns, warnings }
+        }
+        Ok(Err(NoNumbers::Failed(reason))) => Outcome::Failed { reason: as_in_case(reason) },
         Ok(Err(NoNumbers::Stopped(error))) => return Err(error.into()),
         Err(_) => Outcome::Failed {
             reason: "a bug of the program stopped the case; please report it, and run with --retry-failed once it is mended".to_owned(),
@@ -173,9 +179,35 @@ fn run_case<R: Runner>(
     Ok(StoredCase { version, inputs, case: canonical, outcome })
 }
 
+/// A text whose names of files do not begin with a folder any more.
+fn without_folder(text: &str, folder: &str) -> String {
+    let (mut out, mut kept_from) = (String::new(), 0);
+    for (at, _) in text.match_indices(folder).filter(|_| !folder.is_empty()) {
+        // within a path it is another folder
+        let before = text[..at].chars().next_back();
+        if at >= kept_from && before.is_none_or(|c| c.is_whitespace() || "('\"`".contains(c)) {
+            out.push_str(&text[kept_from..at]);
+            kept_from = at + folder.len();
+        }
+    }
+    out + &text[kept_from..]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_is_named_as_its_case_names_it() {
+        for (text, folder, expected) in [
+            ("/a/b/act.ron:2:1: gain (/a/b/c/d.csv)", "/a/b/", "act.ron:2:1: gain (c/d.csv)"),
+            ("./act.ron beside ../b/act.ron", "./", "act.ron beside ../b/act.ron"),
+            ("x/a/b/c and /a/b/c", "/a/b/", "x/a/b/c and c"),
+            ("act.ron", "", "act.ron"),
+        ] {
+            assert_eq!(without_folder(text, folder), expected);
+        }
+    }
 
     #[test]
     fn the_pace_says_rate_and_time_left() {

@@ -2,7 +2,7 @@
 
 use crate::SweepError;
 
-/// A part of the cases: every `of`-th, from the `index`-th on.
+/// A part of the cases: every `of`-th in the order of their keys, from the `index`-th on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Number of the part, from 0.
@@ -30,33 +30,39 @@ impl Shard {
         }
     }
 
-    /// The part of a task of a Slurm array, from the values of `SLURM_ARRAY_TASK_ID`, `_MIN` and `_COUNT`; all cases
-    /// outside an array. The numbers of the tasks follow one another.
+    /// The part of a task of a Slurm array, from the values of `SLURM_ARRAY_TASK_ID` and of `_MIN`, `_MAX` and `_COUNT`;
+    /// all cases outside an array. The numbers of the tasks follow one another.
     ///
     /// # Errors
     /// [`SweepError::Shard`] for values that are no number, or numbers with gaps.
-    pub fn of_array(
-        id: Option<&str>,
-        min: Option<&str>,
-        count: Option<&str>,
-    ) -> Result<Self, SweepError> {
+    pub fn of_array(id: Option<&str>, tasks: [Option<&str>; 3]) -> Result<Self, SweepError> {
         let Some(id) = id else { return Ok(Self::WHOLE) };
         let number = |text: Option<&str>| text.and_then(|text| text.parse::<usize>().ok());
-        match (number(Some(id)), number(min), number(count)) {
-            (Some(id), Some(min), Some(of)) if id >= min && id - min < of => {
+        match (number(Some(id)), tasks.map(number)) {
+            (Some(id), [Some(min), Some(max), Some(of)])
+                if (min..=max).contains(&id) && max - min + 1 == of =>
+            {
                 Ok(Self { index: id - min, of })
             }
-            _ => Err(SweepError::Shard(format!(
-                "SLURM_ARRAY_TASK_ID is {id}, _MIN {}, _COUNT {}: expected tasks that follow one another, as --array=0-3 makes them; give --shard i/n instead",
-                min.unwrap_or("missing"),
-                count.unwrap_or("missing")
-            ))),
+            _ => {
+                let [min, max, count] = tasks.map(|value| value.unwrap_or("missing"));
+                Err(SweepError::Shard(format!(
+                    "SLURM_ARRAY_TASK_ID is {id}, _MIN {min}, _MAX {max}, _COUNT {count}: expected tasks that follow one another, as --array=0-3 makes them; give --shard i/n instead"
+                )))
+            }
         }
     }
 
-    /// The items of the part.
-    pub fn part<T>(self, items: Vec<T>) -> Vec<T> {
-        items.into_iter().skip(self.index).step_by(self.of).collect()
+    /// The items of the part, in the order in which they are given. The order of their keys is by chance: dear values of an
+    /// axis fall to all parts, whatever its place among the axes.
+    pub fn part<T>(self, items: Vec<T>, key: impl Fn(&T) -> &str) -> Vec<T> {
+        let mut order: Vec<usize> = (0..items.len()).collect();
+        order.sort_by(|a, b| key(&items[*a]).cmp(key(&items[*b])));
+        let mut is_mine = vec![false; items.len()];
+        for place in order.into_iter().skip(self.index).step_by(self.of) {
+            is_mine[place] = true;
+        }
+        items.into_iter().zip(is_mine).filter_map(|(item, mine)| mine.then_some(item)).collect()
     }
 }
 
@@ -90,14 +96,14 @@ mod tests {
 
     #[test]
     fn parts_are_all_cases_once() {
-        let all: Vec<usize> = (0..11).collect();
-        let mut found: Vec<usize> = Vec::new();
-        for i in 1..=4 {
-            found.extend(Shard::parse(&format!("{i}/4")).unwrap().part(all.clone()));
-        }
-        assert_eq!(found[..3], [0, 4, 8]);
-        found.sort_unstable();
-        assert_eq!(found, all);
+        let all: Vec<String> = ["g", "c", "a", "e", "b", "f", "d"].map(str::to_owned).to_vec();
+        let part = |i: usize| {
+            Shard::parse(&format!("{i}/3")).unwrap().part(all.clone(), |key| key.as_str())
+        };
+        assert_eq!(
+            [part(1), part(2), part(3)],
+            [vec!["g", "a", "d"], vec!["e", "b"], vec!["c", "f"]]
+        );
         for text in ["0/4", "5/4", "1", "a/b", "1/0", "-1/4", ""] {
             assert!(Shard::parse(text).unwrap_err().to_string().contains("1/n to n/n"), "{text}");
         }
@@ -105,13 +111,17 @@ mod tests {
 
     #[test]
     fn a_task_of_an_array_is_a_part() {
-        let shard = Shard::of_array(Some("7"), Some("5"), Some("4")).unwrap();
+        let shard = Shard::of_array(Some("7"), ["5", "8", "4"].map(Some)).unwrap();
         assert_eq!(shard, Shard::parse("3/4").unwrap());
-        assert_eq!(Shard::of_array(None, None, None).unwrap(), Shard::WHOLE);
-        for (id, min, count) in
-            [("9", Some("5"), Some("4")), ("7", None, Some("4")), ("x", Some("5"), None)]
-        {
-            let error = Shard::of_array(Some(id), min, count).unwrap_err().to_string();
+        assert_eq!(Shard::of_array(None, [None; 3]).unwrap(), Shard::WHOLE);
+        // the last is --array=3,7
+        for (id, tasks) in [
+            ("9", ["5", "8", "4"].map(Some)),
+            ("7", [None, Some("8"), Some("4")]),
+            ("x", [Some("5"), Some("8"), None]),
+            ("3", ["3", "7", "2"].map(Some)),
+        ] {
+            let error = Shard::of_array(Some(id), tasks).unwrap_err().to_string();
             assert!(error.contains("--array=0-3"), "{error}");
         }
     }

@@ -1,7 +1,7 @@
 //! A sweep over a toy whose cases are numbers, from the file to the table.
 
 use crate::{
-    Cell, Failed, Found, Merged, NoNumbers, Plan, ReadCase, Runner, Shard, State, Store,
+    Cell, Done, Failed, Found, Merged, NoNumbers, Plan, ReadCase, Runner, Shard, State, Store,
     SweepError, merge, plan, read_sweep_file, run, status,
 };
 use measured_data::problem::{Fault, Problems};
@@ -289,6 +289,21 @@ fn failed_cases_are_computed_again_when_asked_for() {
     assert_eq!(status(&store, &plan).found, 2);
 }
 
+/// What is said to be computed is on the disk: a kill loses the cases in progress alone.
+#[test]
+fn a_result_is_kept_before_it_is_told() {
+    let (plan, place) = (swept(TWELVE), tempfile::tempdir().unwrap());
+    let store = Store::new(place.path());
+    let told = AtomicUsize::new(0);
+    let look = |done: Done| {
+        let status = status(&store, &plan);
+        assert!(status.found + status.failed.len() >= done.computed, "{done:?} {status:?}");
+        told.fetch_add(1, Ordering::Relaxed);
+    };
+    run(&plan, (Shard::WHOLE, Failed::Left), &store, &ToyRunner::default(), &look).unwrap();
+    assert_eq!(told.into_inner(), 12);
+}
+
 /// Shards in any order, thread counts, one process: the same bytes.
 #[test]
 fn results_are_the_same_whoever_computes_them() {
@@ -316,10 +331,10 @@ fn what_is_missing_damaged_or_foreign_is_named() {
     let store = Store::new(place.path());
     ran(&plan, "1/2", &store);
     let error = merge(&plan, &store, false).unwrap_err().to_string();
-    assert!(
-        error.contains("cases without a result: 6;") && error.contains(&plan.cases[1].key),
-        "{error}"
-    );
+    let lost = plan.cases.iter().position(|case| store.get(&case.key).0 == State::Missing).unwrap();
+    let named = format!("case {}, high ", lost + 1);
+    assert!(error.contains("cases without a result: 6;") && error.contains(&named), "{error}");
+    assert!(error.contains(&plan.cases[lost].key), "{error}");
     assert!(error.contains("and 1 more") && error.contains("--partial"), "{error}");
     assert_eq!(merge(&plan, &store, true).unwrap().cases.len(), 6);
     assert_eq!(ran(&plan, "1/1", &store).computed, 6);

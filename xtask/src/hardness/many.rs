@@ -12,8 +12,9 @@ use super::memory::{Watch, results};
 use super::place::Place;
 use crate::{XtaskError, files};
 
-/// Cases in one process on one core that a case of the sweep is compared with; the first of them reads and identifies the bench.
-const ALONE: usize = 9;
+/// Part of the cases that one process computes on one core, which a case of the sweep is compared with: cases of the same
+/// sweep, drawn by their keys. A further process of one case takes what reading and identifying the bench cost.
+const ALONE_PART: usize = 25;
 /// Part of the cases that is there when the sweep is killed.
 const KILLED_AFTER: f64 = 0.1;
 /// Time between two looks at a process, and at its results, of which there are many.
@@ -52,8 +53,10 @@ pub struct Many {
     pub cases: usize,
     /// Threads.
     pub threads: usize,
-    /// A further case in one process on one core.
+    /// A further case in one process on one core, the mean of some of the cases.
     pub alone: Took,
+    /// These.
+    pub alone_cases: usize,
     /// A case of the sweep after the kill; on the clock times the threads.
     pub swept: Took,
     /// Results at the kill, and what was computed after it.
@@ -100,8 +103,8 @@ impl fmt::Display for Many {
         let [processor, core] = self.more().map(|more| 100.0 * more);
         writeln!(
             f,
-            "one case on one core: {:.3} s of it, {:.3} s of processors",
-            alone.wall_s, alone.processor_s
+            "one case on one core, mean of {}: {:.3} s of it, {:.3} s of processors",
+            self.alone_cases, alone.wall_s, alone.processor_s
         )?;
         writeln!(
             f,
@@ -172,15 +175,19 @@ pub fn measure(
     // the bench inside the program is the same one
     place.write("paper.ron", &case.replace("../bench/", "shipped:"))?;
     let arguments = |name: &'static str, out: &'static str| ["sweep", "run", name, "--out", out];
+    write_sweep(&place, "many.ron", cases)?;
     let mut one = Vec::new();
-    for (name, out, count) in [("one.ron", "one", 1), ("few.ron", "few", 1 + ALONE)] {
-        write_sweep(&place, name, count)?;
+    for (out, parts) in [("one", cases), ("few", ALONE_PART.min(cases.div_ceil(2)))] {
+        let shard = format!("1/{parts}");
+        let shard = [&arguments("many.ron", out)[..], &["--shard", &shard]].concat();
         let begun = now();
-        one.push(waited(place.spawn(&arguments(name, out))?, begun, (LOOK, || {}))?);
+        let took = waited(place.spawn(&shard)?, begun, (LOOK, || {}))?;
+        one.push((took, place.files(out).len()));
     }
     let mut many = Many { cases, threads, ..Many::default() };
-    many.alone = one[1].less(one[0]).times(1.0 / ALONE as f64);
-    write_sweep(&place, "many.ron", cases)?;
+    let [(first, one), (few, some)] = [one[0], one[1]];
+    many.alone_cases = some - one;
+    many.alone = few.less(first).times(1.0 / many.alone_cases.max(1) as f64);
     let run = arguments("many.ron", "out");
     let (before, met) = killed(&place, &run, threads, cases)?;
     if !met {

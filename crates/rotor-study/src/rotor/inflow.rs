@@ -175,6 +175,9 @@ pub fn wake_warnings(wake: &WakeTrim) -> Vec<String> {
     }
     let (flight, thrust) = (&wake.trim.flight, wake.trim.rotor.thrust_coefficient);
     let settled = wake.outcome == WakeOutcome::Settled;
+    if settled && (f64::MIN_POSITIVE..LOW_SPEED).contains(&flight.advance_ratio) {
+        warnings.push("the free wake has settled at low speed, where it may not be stable: a rotor in time may leave it. Compare with `hhc wake CASE.ron --in-time`".to_owned());
+    }
     warnings.extend(descent_warning(flight, thrust, settled));
     if !matches!(wake.outcome, WakeOutcome::TooLittleInflow { .. }) {
         warnings.extend(momentum_warning(flight, thrust, wake.trim.rotor.inflow.mean()));

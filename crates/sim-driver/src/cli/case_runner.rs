@@ -78,7 +78,9 @@ impl CaseRunner {
         if let Some(found) = actuators.get(&name) {
             return Ok(Some(found.clone()));
         }
-        let found = Arc::new(identified(&folder)?);
+        // data that went meanwhile are no failure of the case: without its hash they are looked for again
+        let forget = |_: &SimError| drop(lock(&self.hashes).remove(&name));
+        let found = Arc::new(identified(&folder).inspect_err(forget)?);
         // what was identified, whatever was read for the key before
         lock(&self.hashes).insert(name.clone(), found.0.content_hash.clone());
         actuators.insert(name, found.clone());
@@ -113,6 +115,10 @@ impl Runner for CaseRunner {
 
     fn version(&self) -> &'static str {
         rotor_study::MODEL_VERSION
+    }
+
+    fn folder(&self) -> String {
+        self.folder.display("")
     }
 
     fn read(&self, text: &str) -> Result<ReadCase<LoadedCase>, Problems> {
@@ -197,4 +203,36 @@ fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
     columns.extend(load_columns("", &figures.baseline.hub_nb_per_rev, scales));
     columns.extend(figures.control.iter().flat_map(|line| control_columns(line, scales)));
     columns
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{ActuatorChoice, BenchFolder, PAPER_CASE, shipped_case};
+
+    /// Bench data that go after they were hashed are no failure of the case: it cannot be read again, which ends the sweep.
+    #[test]
+    fn bench_data_that_went_are_looked_for_again() {
+        let place = tempfile::tempdir().unwrap();
+        let bench = place.path().join("bench");
+        std::fs::create_dir(&bench).unwrap();
+        let shipped =
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/bench/apa500l_synthetic");
+        for entry in std::fs::read_dir(shipped).unwrap() {
+            let path = entry.unwrap().path();
+            std::fs::copy(&path, bench.join(path.file_name().unwrap())).unwrap();
+        }
+        let mut case = shipped_case(PAPER_CASE).unwrap().case;
+        case.actuator.model = ActuatorChoice::Bench(BenchFolder { dataset: "bench".to_owned() });
+        let text = ron_text(&case).unwrap();
+        let runner = CaseRunner::new(Folder::Disk(place.path().to_path_buf()));
+        let read = runner.read(&text).unwrap();
+        let lost = std::fs::read_dir(&bench).unwrap().map(|entry| entry.unwrap().path());
+        let lost =
+            lost.filter(|path| path.extension().is_some_and(|end| end == "csv")).min().unwrap();
+        std::fs::remove_file(lost).unwrap();
+        assert_eq!(runner.read(&text).unwrap().inputs, read.inputs, "the hash is kept");
+        runner.bench(&read.case).unwrap_err();
+        assert!(runner.read(&text).is_err(), "a lost file is not looked for");
+    }
 }

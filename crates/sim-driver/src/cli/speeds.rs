@@ -123,6 +123,10 @@ impl Runner for SpeedRunner<'_> {
         self.cases.version()
     }
 
+    fn folder(&self) -> String {
+        self.cases.folder()
+    }
+
     fn read(&self, text: &str) -> Result<ReadCase<LoadedCase>, Problems> {
         let read = self.cases.read(text)?;
         let case = at_advance_ratio(self.loaded, read.case.case.advance_ratio);

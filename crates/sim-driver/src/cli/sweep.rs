@@ -172,8 +172,8 @@ impl Sweep {
 #[expect(clippy::disallowed_methods, reason = "Slurm says in the environment which task this is")]
 fn task_of_array() -> Result<Shard, case_sweep::SweepError> {
     let value = |name: &str| std::env::var(format!("SLURM_ARRAY_TASK_{name}")).ok();
-    let (id, min, count) = (value("ID"), value("MIN"), value("COUNT"));
-    Shard::of_array(id.as_deref(), min.as_deref(), count.as_deref())
+    let tasks = ["MIN", "MAX", "COUNT"].map(value);
+    Shard::of_array(value("ID").as_deref(), tasks.each_ref().map(Option::as_deref))
 }
 
 fn show_plan(sweep: &Sweep, format: Format) -> Result<(), SimError> {

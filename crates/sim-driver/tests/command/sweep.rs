@@ -91,6 +91,29 @@ fn any_parts_merge_to_the_same_bytes() {
     assert_eq!(&last["found"]["ideal_3_per_rev_reduction_percent"], reduction);
 }
 
+/// A result has the same bytes wherever its folder lies and however the path was typed, though what it warns of names a file.
+#[test]
+fn a_result_does_not_know_how_its_path_was_typed() {
+    let place =
+        swept("(base: \"case.ron\", axes: [(field: \"rotor.gj\", values: [0.005, 0.007])])");
+    place.write(
+        "act.ron",
+        "(kind: Actuator, title: \"by hand\", gain: Some(Assumed), model: (
+            law: Linear(gain_deg_per_volt: 0.118, bias_volt: 65), range_volt: (-20, 150),
+            calibration: (deg_per_um: 1, zero_um: 0)))",
+    );
+    place
+        .write("case.ron", &QUICK_CASE.replace("model: Ideal)", "model: File(path: \"act.ron\"))"));
+    let typed = place.path().join("sweep.ron");
+    for (file, out) in [("sweep.ron", "here"), (typed.to_str().unwrap(), "there")] {
+        place.hhc(&["sweep", "run", file, "--out", out]).done();
+        place.hhc(&["sweep", "merge", file, "--out", out]).done();
+    }
+    let [here, there] = ["here", "there"].map(|out| place.read(&format!("{out}/sweep.json")));
+    assert!(here.contains("\"act.ron:3:"), "nothing warns of the file: {here}");
+    assert_eq!(here, there);
+}
+
 #[test]
 fn what_is_wrong_is_told_before_anything_runs() {
     for (axes, parts) in [
