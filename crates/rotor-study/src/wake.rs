@@ -133,7 +133,7 @@ pub fn wake_of_case(case: &Case) -> Result<FoundWake, StudyError> {
         disk: Some(disk),
         result: result_of(&case, wake),
         wake: wake.wake.clone(),
-        circulation: wake.moving.clone(),
+        circulation: wake.moving_of_the_wake(),
         inflow: wake.trim.rotor.inflow.clone(),
     })
 }

@@ -7,7 +7,7 @@ use crate::{
 use rotor_response::{Controls, ResponseError, RotorSolution, RotorSolver};
 use rotor_wake::{
     BladeLines, CirculationMap, FreeWake, FreeWakeSettings, FrozenWake, InducedInflow, InflowModel,
-    WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
+    LineInduction, WakeError, WakeMethod, WakeRotor, WakeSymmetry, momentum_inflow,
 };
 
 /// Halvings of the part of a sweep that is gone, at most.
@@ -29,18 +29,41 @@ const TRUSTED: f64 = 0.1;
 /// Updates in turn that may fail, each with half of the part before.
 const FAILURES: usize = 3;
 
-/// Lifting lines and circulation of a response on the grid of a wake; in an axial wake, those that turn with the
-/// blades.
-pub(crate) fn on_the_grid(
+/// Lifting lines and circulation of a response at uniform azimuths; in an axial wake, those that turn with the blades.
+pub(crate) fn at_azimuths(
+    azimuths: usize,
     solver: &RotorSolver,
     response: &RotorSolution,
     controls: &Controls,
     panels: &WakeRotor,
     settings: &FreeWakeSettings,
 ) -> Result<(BladeLines, CirculationMap), ResponseError> {
-    let lines = solver.blade_lines(&response.modal, controls, panels, settings.azimuths);
-    let circulation = solver.circulation(response, panels, settings.azimuths)?;
+    let lines = solver.blade_lines(&response.modal, controls, panels, azimuths);
+    let circulation = solver.circulation(response, panels, azimuths)?;
     axial_as_the_wake(lines, circulation, settings)
+}
+
+/// A circulation on the grid of a wake, from azimuths that are a multiple of it.
+pub(crate) fn at_azimuths_of(wake: &FreeWake, circulation: &CirculationMap) -> CirculationMap {
+    circulation.at_every(circulation.azimuths() / wake.settings().azimuths)
+}
+
+/// Lifting lines on the grid of a wake, from azimuths that are a multiple of it.
+pub(crate) fn lines_of(wake: &FreeWake, lines: &BladeLines) -> BladeLines {
+    lines.at_every(lines.azimuths() / wake.settings().azimuths)
+}
+
+/// What a circulation induces at the blades at its azimuths, with the geometry of the wake interpolated to them.
+pub(crate) fn felt(
+    wake: &FreeWake,
+    lines: BladeLines,
+    circulation: &CirculationMap,
+) -> Result<LineInduction, WakeError> {
+    let azimuths = circulation.azimuths();
+    if azimuths == wake.settings().azimuths {
+        return wake.line_induction(circulation);
+    }
+    wake.on_grid(azimuths, lines)?.line_induction(circulation)
 }
 
 /// Lines and circulation as a wake takes them: those that turn with the blades, if it is axial.
@@ -62,7 +85,7 @@ pub(crate) struct State {
     pub(crate) trim: TrimSolution,
     pub(crate) wake: FreeWake,
     pub(crate) frozen: FrozenWake,
-    /// Circulation that moved the wake.
+    /// Circulation that moved the wake, at the azimuths at which the sections feel it.
     pub(crate) moving: CirculationMap,
     /// Largest change of the inflow that led here, tip speed.
     pub(crate) inflow_change: f64,
@@ -114,16 +137,19 @@ impl Coupling<'_> {
         before: Option<&FreeWake>,
     ) -> Result<State, TrimError> {
         let settings = self.settings.wake.with_azimuths(azimuths);
+        let sections = self.settings.sections_of(azimuths);
+        let (solver, controls) = (&self.solver, &start.controls);
         let (lines, circulation) =
-            on_the_grid(&self.solver, &start.rotor, &start.controls, panels, &settings)?;
+            at_azimuths(sections, solver, &start.rotor, controls, panels, &settings)?;
+        let of_the_wake = lines.at_every(sections / azimuths);
         let wake = if let Some(wake) = before {
-            wake.on_grid(azimuths, lines)?
+            wake.on_grid(azimuths, of_the_wake)?
         } else {
             let mean = momentum_inflow(&start.flight, start.rotor.thrust_coefficient)?;
-            FreeWake::undistorted(panels.clone(), settings, start.flight, mean, lines)?
+            FreeWake::undistorted(panels.clone(), settings, start.flight, mean, of_the_wake)?
         };
-        let slope = self.solver.circulation_slope(&start.controls, panels, azimuths);
-        let frozen = FrozenWake::new(wake.line_induction(&circulation)?, &circulation, &slope)?;
+        let slope = self.solver.circulation_slope(controls, panels, sections);
+        let frozen = FrozenWake::new(felt(&wake, lines, &circulation)?, &circulation, &slope)?;
         self.in_still_wake((wake, frozen), circulation, start)
     }
 
@@ -224,7 +250,8 @@ impl Coupling<'_> {
     fn update(&mut self, now: &State, halvings: u32) -> Result<State, TrimError> {
         let part = 0.5_f64.powf(f64::from(halvings));
         let panels = now.wake.rotor();
-        let (lines, circulation) = on_the_grid(
+        let (lines, circulation) = at_azimuths(
+            now.moving.azimuths(),
             &self.solver,
             &now.trim.rotor,
             &now.trim.controls,
@@ -233,15 +260,16 @@ impl Coupling<'_> {
         )?;
         let share = self.share * f64::max(part, 0.4);
         let circulation = circulation.mixed(&now.moving, share)?;
+        let of_the_wake = at_azimuths_of(&now.wake, &circulation);
         let mean = momentum_inflow(&now.trim.flight, now.trim.rotor.thrust_coefficient)?;
         let mut wake = now.wake.clone();
-        wake.set_condition(now.trim.flight, mean, lines)?;
+        wake.set_condition(now.trim.flight, mean, lines_of(&now.wake, &lines))?;
         // on a new grid the wake is far from where it settles
         if now.displacement.is_infinite() && self.settings.method == WakeMethod::Relaxed {
-            self.brought_near(&mut wake, &circulation)?;
+            self.brought_near(&mut wake, &of_the_wake)?;
         }
-        let (displacement, gone) = self.carried_on(&mut wake, &circulation, part)?;
-        let frozen = now.frozen.moved_on(wake.line_induction(&circulation)?, &circulation)?;
+        let (displacement, gone) = self.carried_on(&mut wake, &of_the_wake, part)?;
+        let frozen = now.frozen.moved_on(felt(&wake, lines, &circulation)?, &circulation)?;
         let mut next = self.in_still_wake((wake, frozen), circulation, &now.trim)?;
         next.displacement = displacement;
         next.inflow_change = largest_change(&next.trim.rotor.inflow, &now.trim.rotor.inflow) / gone;

@@ -1,6 +1,6 @@
 //! Trim and free wake together.
 
-use crate::coupling::{Coupling, MIXED, State};
+use crate::coupling::{Coupling, MIXED, State, at_azimuths_of};
 use crate::{
     TrimError, TrimSettings, TrimSolution, TrimTarget, WakeOutcome, WakeTrimSettings, WakeUpdate,
     trim,
@@ -87,11 +87,16 @@ pub struct WakeTrim {
     pub updates: Vec<WakeUpdate>,
     /// Nearest approach of a tip vortex to a blade.
     pub closest_passage: Option<ClosestPassage>,
-    /// Circulation that moved the wake in the last update.
+    /// Circulation that moved the wake in the last update, at the azimuths at which the sections feel it.
     pub moving: CirculationMap,
 }
 
 impl WakeTrim {
+    /// Circulation that moved the wake in the last update, on its own grid.
+    pub fn moving_of_the_wake(&self) -> CirculationMap {
+        at_azimuths_of(&self.wake, &self.moving)
+    }
+
     /// The state to set out from.
     fn state(&self) -> State {
         State {
@@ -161,6 +166,7 @@ fn coupled(
     let ends: Vec<f64> = model.flaps.iter().flat_map(|flap| [flap.start, flap.end]).collect();
     let panels = WakeRotor::through(blades, cutout, settings.panels, &ends)?;
     settings.wake.validate(blades)?;
+    settings.validate_sections()?;
     let mut settings = settings.clone();
     if near.is_some() && settings.method == WakeMethod::Relaxed {
         settings.sweeps = NEAR_SWEEPS;
@@ -205,7 +211,9 @@ fn coupled(
         outcome = WakeOutcome::TooLittleInflow { of_momentum };
     }
     Ok(WakeTrim {
-        closest_passage: state.wake.closest_passage(&state.moving)?,
+        closest_passage: state
+            .wake
+            .closest_passage(&at_azimuths_of(&state.wake, &state.moving))?,
         trim: state.trim,
         wake: state.wake,
         moving: state.moving,

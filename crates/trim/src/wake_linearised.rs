@@ -9,7 +9,7 @@
 //! The geometry answers by a few percent of what the circulation does, so that the series falls by as much from term to
 //! term.
 
-use crate::coupling::axial_as_the_wake;
+use crate::coupling::{at_azimuths_of, axial_as_the_wake, felt, lines_of};
 use crate::wake::WakeTrim;
 use crate::wake_settings::WakeTrimSettings;
 use rayon::prelude::*;
@@ -17,7 +17,7 @@ use rotor_response::{
     Condition, Disturbance, FlapDirection, HubSensitivity, InflowState, ResponseError, RotorSolver,
 };
 use rotor_wake::{
-    CirculationMap, FreeWake, InducedInflow, InflowModel, RotorLoading, momentum_inflow,
+    BladeLines, CirculationMap, FreeWake, InducedInflow, InflowModel, RotorLoading, momentum_inflow,
 };
 
 /// Updates of the geometry at most.
@@ -44,9 +44,10 @@ pub struct WakeLinearised {
     pub change: f64,
 }
 
-/// A wake on its way, and the inflow of its circulation in it.
+/// A wake on its way, and the inflow of its circulation in it: blades and circulation at the azimuths of the sections.
 struct Moved {
     wake: FreeWake,
+    lines: BladeLines,
     circulation: CirculationMap,
     inflow: Vec<f64>,
 }
@@ -54,8 +55,9 @@ struct Moved {
 impl Moved {
     /// The geometry after one more update.
     fn update(&mut self, settings: &WakeTrimSettings) -> Result<(), ResponseError> {
-        self.wake.carry_on(settings.method, SWEEPS, &self.circulation)?;
-        let induction = self.wake.line_induction(&self.circulation)?;
+        let of_the_wake = at_azimuths_of(&self.wake, &self.circulation);
+        self.wake.carry_on(settings.method, SWEEPS, &of_the_wake)?;
+        let induction = felt(&self.wake, self.lines.clone(), &self.circulation)?;
         self.inflow = InducedInflow::Map(induction.inflow(&self.circulation)?).parameters();
         Ok(())
     }
@@ -90,19 +92,19 @@ impl Base<'_> {
         let Some(drive) = &change.drive else { return Ok(None) };
         let Self { about, solver, condition, .. } = self;
         let (rotor, settings) = (&about.trim.rotor, about.wake.settings());
-        let panels = about.wake.rotor().clone();
-        let circulation = solver.circulation(rotor, &panels, settings.azimuths)?;
+        let (panels, azimuths) = (about.wake.rotor().clone(), about.moving.azimuths());
+        let circulation = solver.circulation(rotor, &panels, azimuths)?;
         let pairs = circulation.values().iter().zip(&drive.circulation);
         let values = pairs.map(|(value, change)| value + part * change).collect();
         let circulation = CirculationMap::new(panels.panels(), values)?;
         let modal = drive.moved(&rotor.modal, part);
-        let lines = solver.blade_lines(&modal, &condition.controls, &panels, settings.azimuths);
+        let lines = solver.blade_lines(&modal, &condition.controls, &panels, azimuths);
         let (lines, circulation) = axial_as_the_wake(lines, circulation, settings)?;
         let mut wake = about.wake.clone();
         let thrust = rotor.thrust_coefficient + part * change.thrust_coefficient;
         let mean = momentum_inflow(&condition.flight, thrust)?;
-        wake.set_condition(condition.flight, mean, lines)?;
-        Ok(Some(Moved { wake, circulation, inflow: Vec::new() }))
+        wake.set_condition(condition.flight, mean, lines_of(&wake, &lines))?;
+        Ok(Some(Moved { wake, lines, circulation, inflow: Vec::new() }))
     }
 
     /// What the geometry adds to the inflow by a change: one term of `h`; none without a circulation. Wakes with the step

@@ -1,6 +1,6 @@
 //! What moving flaps do to the hub once the free wake has changed its shape as well.
 
-use crate::coupling::{MIXED, on_the_grid};
+use crate::coupling::{MIXED, at_azimuths, at_azimuths_of, felt, lines_of};
 use crate::wake::WakeTrim;
 use crate::wake_settings::WakeTrimSettings;
 use rotor_response::{Condition, ResponseError, RotorSolution, RotorSolver};
@@ -57,7 +57,8 @@ impl<'a> WakeResponse<'a> {
         settings: &WakeTrimSettings,
     ) -> Result<(), ResponseError> {
         let panels = self.wake.rotor().clone();
-        let (lines, circulation) = on_the_grid(
+        let (lines, circulation) = at_azimuths(
+            self.moving.azimuths(),
             solver,
             &self.rotor,
             &self.condition.controls,
@@ -67,9 +68,10 @@ impl<'a> WakeResponse<'a> {
         let circulation = circulation.mixed(&self.moving, MIXED)?;
         let flight = self.condition.flight;
         let mean = momentum_inflow(&flight, self.rotor.thrust_coefficient)?;
-        self.wake.set_condition(flight, mean, lines)?;
-        self.wake.carry_on(settings.method, settings.sweeps, &circulation)?;
-        let induction = self.wake.line_induction(&circulation)?;
+        self.wake.set_condition(flight, mean, lines_of(&self.wake, &lines))?;
+        let of_the_wake = at_azimuths_of(&self.wake, &circulation);
+        self.wake.carry_on(settings.method, settings.sweeps, &of_the_wake)?;
+        let induction = felt(&self.wake, lines, &circulation)?;
         self.frozen = self.frozen.moved_on(induction, &circulation)?;
         self.rotor = solver.clone().solve(self.condition, &self.frozen, Some(&self.rotor))?;
         self.moving = circulation;

@@ -1,7 +1,10 @@
 //! How a trim is coupled with a free wake, and how the coupling ended.
 
 use crate::TrimError;
-use rotor_wake::{FarField, FreeWakeSettings, WakeMethod};
+use rotor_wake::{FarField, FreeWakeSettings, WakeMethod, WakeSymmetry};
+
+/// Azimuths at which sections may feel the wake, at most: steps of a degree.
+const MOST_SECTION_AZIMUTHS: usize = 360;
 
 /// How a trim is coupled with a free wake.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,6 +14,9 @@ pub struct WakeTrimSettings {
     /// Spanwise panels of nearly equal width between cut-out and tip, with ends on those of the flaps: no narrower than the distance of the stations of the
     /// response, or circulation and inflow at the tip do not answer each other.
     pub panels: usize,
+    /// Azimuths at which the sections feel the wake in the last stage, a multiple of its azimuth steps: the geometry is
+    /// interpolated between these along azimuth and age. None: those of the geometry.
+    pub section_azimuths: Option<usize>,
     /// Azimuth steps of the coarser stages before.
     pub stages: Vec<usize>,
     /// Largest change of the inflow between two updates of the last stage, tip speed.
@@ -32,6 +38,7 @@ impl Default for WakeTrimSettings {
         Self {
             wake: FreeWakeSettings { far_field, ..FreeWakeSettings::default() }.with_azimuths(36),
             panels: 20,
+            section_azimuths: None,
             stages: vec![12],
             inflow_tolerance: 2e-4,
             displacement_tolerance: 2e-3,
@@ -39,6 +46,33 @@ impl Default for WakeTrimSettings {
             method: WakeMethod::default(),
             sweeps: 3,
         }
+    }
+}
+
+impl WakeTrimSettings {
+    /// Azimuths at which the sections feel the wake of a stage.
+    pub(crate) fn sections_of(&self, azimuths: usize) -> usize {
+        let last = azimuths == self.wake.azimuths;
+        self.section_azimuths.filter(|_| last).unwrap_or(azimuths)
+    }
+
+    /// Checks that the sections' azimuths are a multiple of those of the wake, and the wake no axial one.
+    pub(crate) fn validate_sections(&self) -> Result<(), TrimError> {
+        let Some(count) = self.section_azimuths else { return Ok(()) };
+        let (field, value) = ("section_azimuths", count as f64);
+        let of_the_wake = self.wake.azimuths;
+        let is_multiple = (of_the_wake..=MOST_SECTION_AZIMUTHS).contains(&count)
+            && count.is_multiple_of(of_the_wake);
+        let is_alike = count == of_the_wake || self.wake.symmetry == WakeSymmetry::Periodic;
+        let expected = if is_alike {
+            "a multiple of the azimuth steps of the wake, at most 360"
+        } else {
+            "those of the wake: an axial one turns with its blades"
+        };
+        if is_multiple && is_alike {
+            return Ok(());
+        }
+        Err(TrimError::Parameter { field, value, expected })
     }
 }
 

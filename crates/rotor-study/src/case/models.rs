@@ -284,6 +284,7 @@ impl Case {
         WakeTrimSettings {
             wake,
             panels: values.panels,
+            section_azimuths: values.section_azimuths,
             // of the coarse grid before, too, the blades get whole steps
             stages: usual.stages.iter().map(|n| n.next_multiple_of(self.rotor.blades)).collect(),
             inflow_tolerance: values.tolerance,

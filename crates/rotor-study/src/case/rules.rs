@@ -79,6 +79,16 @@ fn check_wake(check: &mut Checker, wake: &FreeWakeValues, blades: usize) {
         );
         check.refuse(field, message);
     }
+    if let Some(sections) = wake.section_azimuths {
+        let is_multiple = sections.is_multiple_of(azimuths) && (azimuths..=360).contains(&sections);
+        if !is_multiple || wake.choices().symmetry == WakeSymmetry::Axial {
+            let message = format!(
+                "{sections} is no multiple of the {azimuths} azimuth steps of a periodic wake up to 360; give {}, or leave it out",
+                azimuths * (sections / azimuths).clamp(1, 360 / azimuths)
+            );
+            check.refuse("inflow.model.section_azimuths", message);
+        }
+    }
     if let Some(Err(source)) = wake.body.body().map(|body| body.validate()) {
         check.refuse("inflow.model.body", format!("{source}; 0 for length_r is no body"));
     }

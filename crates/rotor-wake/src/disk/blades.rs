@@ -138,6 +138,15 @@ impl BladeLines {
         Ok(Self { nodes: self.nodes, points: turned(&self.points), edges: turned(&self.edges) })
     }
 
+    /// The blades at every `n`-th of their azimuths, from the first.
+    #[must_use]
+    pub fn at_every(&self, n: usize) -> Self {
+        let of = |nodes: &[Vec3]| -> Vec<Vec3> {
+            nodes.chunks_exact(self.nodes).step_by(n.max(1)).flatten().copied().collect()
+        };
+        Self { nodes: self.nodes, points: of(&self.points), edges: of(&self.edges) }
+    }
+
     /// Largest distance of a node from where the blade at azimuth 0 would be when turned there, unit `R`.
     pub(crate) fn departure_from_turning(&self) -> f64 {
         let azimuths = self.azimuths();

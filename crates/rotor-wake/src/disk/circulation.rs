@@ -126,6 +126,13 @@ impl CirculationMap {
         Self::new(self.panels, pairs.map(|(a, b)| part * a + (1.0 - part) * b).collect())
     }
 
+    /// The circulation at every `n`-th of its azimuths, from the first.
+    #[must_use]
+    pub fn at_every(&self, n: usize) -> Self {
+        let rows = self.values.chunks_exact(self.panels).step_by(n.max(1));
+        Self { panels: self.panels, values: rows.flatten().copied().collect() }
+    }
+
     /// The mean over the azimuth at every azimuth, for an axial wake.
     #[must_use]
     pub fn axial(&self) -> Self {

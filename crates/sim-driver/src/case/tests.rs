@@ -172,6 +172,11 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
             "azimuths: 22",
             "inflow.model.azimuths: is refused: 22 steps per revolution do not give each of 4 blades a whole number of them; give 20 or 24",
         ),
+        (
+            "section_azimuths: 100",
+            "inflow.model.section_azimuths: is refused: 100 is no multiple of the 36 azimuth steps of a periodic wake up to 360; give 72, or leave it out",
+        ),
+        ("section_azimuths: 720", "give 360, or leave it out"),
         ("turns: 0", "inflow.model.turns: is 0"),
         ("near_wake_deg: 0.0", "inflow.model.near_wake_deg: is 0"),
         ("core_r: NaN", "inflow.model.core_r: is NaN"),

@@ -102,7 +102,7 @@ impl CoupledInTime {
         };
         let inflow = (0..REMEMBERED).map(before).collect();
         let slopes = vec![None; azimuths];
-        let wake = WakeInTime::new(wake, &begun.moving)?;
+        let wake = WakeInTime::new(wake, &begun.moving_of_the_wake())?;
         Ok(Self { rotor, panels, wake, blades, settings, blade_steps, inflow, slopes, steps: 0 })
     }
 

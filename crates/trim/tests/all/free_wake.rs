@@ -104,6 +104,35 @@ fn a_wake_that_moves_has_not_settled() {
     assert!(inflow_change <= tolerance && displacement > 1e-12, "{inflow_change} {displacement}");
 }
 
+/// Sections that feel a wake at more azimuths than its geometry has come nearer to the wake that is fine throughout; at those of
+/// the geometry nothing changes.
+#[test]
+fn sections_feel_a_wake_at_more_azimuths_than_its_geometry_has() {
+    let with = |azimuths: usize, section_azimuths: Option<usize>| {
+        let settings = few_steps(2);
+        let wake = settings.wake.with_azimuths(azimuths);
+        coupled(0.25, &WakeTrimSettings { wake, section_azimuths, ..settings }, 0.07)
+    };
+    let coarse = with(12, None).unwrap();
+    let same = with(12, Some(12)).unwrap();
+    assert_eq!(same.trim.rotor.hub.mean, coarse.trim.rotor.hub.mean);
+    let both = with(12, Some(36)).unwrap();
+    let fine = with(36, None).unwrap();
+    assert_eq!((both.outcome.clone(), both.moving.azimuths()), (WakeOutcome::Settled, 36));
+    assert_eq!((both.wake.settings().azimuths, both.moving_of_the_wake().azimuths()), (12, 12));
+    let loads = |of: &WakeTrim| of.trim.rotor.hub.harmonic(4);
+    let off = |of: &WakeTrim| {
+        let pairs = loads(of).into_iter().zip(loads(&fine));
+        pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    };
+    println!("4/rev loads off by {:.2e}, with fine sections {:.2e}", off(&coarse), off(&both));
+    assert!(off(&both) < 0.5 * off(&coarse), "{} {}", off(&both), off(&coarse));
+    for refused in [Some(20), Some(6), Some(372)] {
+        let error = with(12, refused).unwrap_err().to_string();
+        assert!(error.contains("section_azimuths"), "{error}");
+    }
+}
+
 /// `2 pi alpha` from ahead, `2 pi (alpha -+ pi)` from behind, in a table without drag and moment.
 fn linear_law() -> NonlinearSections {
     let angles_deg: Vec<f64> = vec![-180.0, -90.5, -90.0, 90.0, 90.5, 180.0];

@@ -126,7 +126,11 @@ impl Case {
         }
         let r = &self.response;
         let points = r.time_elements * r.time_gauss_points;
-        let azimuths = wake.azimuths_for(self.rotor.blades);
+        let of_the_wake = wake.azimuths_for(self.rotor.blades);
+        let (field, azimuths) = match wake.section_azimuths {
+            Some(count) => ("inflow.model.section_azimuths", count),
+            None => ("inflow.model.azimuths", of_the_wake),
+        };
         let is_trimmed = wake.circulation == CirculationChoice::Trimmed;
         let flies = is_trimmed && !in_plane && self.advance_ratio > 0.0;
         if flies && near_wake_deg < SHORTEST_IN_FLIGHT_DEG {
@@ -140,7 +144,7 @@ impl Case {
                 "{azimuths} steps per revolution are more than three quarters of the {points} points in time of the response (response.time_elements times time_gauss_points): inflow and circulation do not answer each other on every step. Give time_gauss_points of {} or more",
                 (4 * azimuths).div_ceil(3 * r.time_elements)
             );
-            warnings.push(warning("inflow.model.azimuths", message));
+            warnings.push(warning(field, message));
         }
         warnings
     }
