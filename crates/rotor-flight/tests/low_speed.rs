@@ -31,7 +31,7 @@ fn marched_from(weight: f64) -> (f64, bool, SteadyInTime) {
     let begun = TrimmedRotor::new(&case(weight), None).unwrap();
     let march = InTimeSettings { blade_steps_per_revolution: 72, ..InTimeSettings::default() };
     let settings =
-        SteadySettings { march, settling: 14, revolutions: 14, ..SteadySettings::default() };
+        SteadySettings { march, settling: 14, revolutions: 24, ..SteadySettings::default() };
     let still = |_: usize, _: f64, _: f64| vec![[0.0; 3]; 2];
     let (target, wake) = (wanted.trim_target(), begun.wake().unwrap());
     let found =

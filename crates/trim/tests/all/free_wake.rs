@@ -115,7 +115,7 @@ fn sections_feel_a_wake_at_more_azimuths_than_its_geometry_has() {
     };
     let coarse = with(12, None).unwrap();
     let same = with(12, Some(12)).unwrap();
-    assert_eq!(same.trim.rotor.hub.mean, coarse.trim.rotor.hub.mean);
+    assert_eq!(same.trim.rotor.hub.mean(), coarse.trim.rotor.hub.mean());
     let both = with(12, Some(36)).unwrap();
     let fine = with(36, None).unwrap();
     assert_eq!((both.outcome.clone(), both.moving.azimuths()), (WakeOutcome::Settled, 36));
