@@ -30,7 +30,7 @@ pub use model::rotor_model::{
     Compressibility, Controls, Couplings, Discretisation, Planform, ReverseFlow, RotorModel,
     SectionOffsets,
 };
-pub use model::section_settings::{DynamicStall, NonlinearSections};
+pub use model::section_settings::{Camber, DynamicStall, NonlinearSections};
 pub use model::span::SpanGrid;
 pub use response::hinge::HingeMoment;
 pub use response::rotor::{Condition, Rotor};

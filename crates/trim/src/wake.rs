@@ -211,9 +211,7 @@ fn coupled(
         outcome = WakeOutcome::TooLittleInflow { of_momentum };
     }
     Ok(WakeTrim {
-        closest_passage: state
-            .wake
-            .closest_passage(&at_azimuths_of(&state.wake, &state.moving))?,
+        closest_passage: state.wake.closest_passage(&at_azimuths_of(&state.wake, &state.moving))?,
         trim: state.trim,
         wake: state.wake,
         moving: state.moving,

@@ -7,6 +7,7 @@
 //! | harmonic, compressible | [`Possio`] |
 //! | harmonic, Mach 0 | [`incompressible_loads`] |
 //! | first moments after a step | [`short_time()`] |
+//! | steady, incompressible, with thickness and camber | [`Outline`] |
 //! | poles and gains of a lag model | [`calibration`] |
 //!
 //! # Conventions
@@ -20,6 +21,7 @@ mod bessel;
 mod chebyshev;
 mod downwash;
 mod incompressible;
+mod panels;
 mod possio;
 mod short_time;
 
@@ -28,6 +30,7 @@ use num_complex::Complex64;
 pub use bessel::{bound_circulation, theodorsen_function};
 pub use downwash::{start_loads, steady_loads};
 pub use incompressible::incompressible_loads;
+pub use panels::{Outline, linear_section, thin_mean_line_230};
 pub use possio::{Possio, TERMS};
 pub use short_time::{ShortTime, short_time};
 

@@ -56,7 +56,8 @@ impl Rotor {
                 let test = Vector3::new(1.0, x * cos, x * sin);
                 let pitch = Vector3::new(1.0, cos, sin);
                 matrix += part * speed * test * pitch.transpose();
-                without_controls += part * (speed * blade.twist[i] - inflow) * test;
+                let incidence = blade.twist[i] - blade.air[i].zero_lift;
+                without_controls += part * (speed * incidence - inflow) * test;
             }
         }
         let wanted = Vector3::new(thrust / (model.blades as f64 * lift), 0.0, 0.0);
@@ -68,7 +69,7 @@ impl Rotor {
 #[cfg(test)]
 mod tests {
     use crate::{
-        Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor,
+        Camber, Compressibility, Couplings, Discretisation, NonlinearSections, ReverseFlow, Rotor,
         RotorModel, SectionOffsets,
     };
     use approx::assert_relative_eq;
@@ -91,6 +92,7 @@ mod tests {
             planform: crate::Planform::default(),
             lock_number: 5.2,
             drag_coefficient: 0.01,
+            camber: Camber::default(),
             root_cutout: cutout,
             modal_damping: 0.005,
             lag_damper: 0.0,

@@ -1,7 +1,7 @@
 //! What a rotor is made of: validated parameters handed down by the drivers.
 
 use crate::error::check;
-use crate::{NonlinearSections, ResponseError, TrailingEdgeFlap};
+use crate::{Camber, NonlinearSections, ResponseError, TrailingEdgeFlap};
 use flap_aero::AttachedFlowModel;
 use rotor_base::HarmonicSeries;
 use rotor_base::gauss_legendre;
@@ -133,6 +133,8 @@ pub struct RotorModel {
     pub lock_number: f64,
     /// Profile drag coefficient.
     pub drag_coefficient: f64,
+    /// Camber of the sections, where they have no tables.
+    pub camber: Camber,
     /// Aerodynamic root cut-out, radius R.
     pub root_cutout: f64,
     /// Tip loss factor B, radius R: outboard of it a section drags but does not lift; 1 for none.
@@ -172,6 +174,7 @@ impl RotorModel {
             planform: Planform::default(),
             lock_number: 5.2,
             drag_coefficient: 0.01,
+            camber: Camber::default(),
             root_cutout: 0.2,
             tip_loss: 1.0,
             gravity: 0.0,
@@ -215,6 +218,8 @@ impl RotorModel {
             ("chord", self.chord, 1e-3..=0.5, "0.001 to 0.5 R"),
             ("lock_number", self.lock_number, 0.0..=50.0, "0 to 50"),
             ("drag_coefficient", self.drag_coefficient, 0.0..=1.0, "0 to 1"),
+            ("camber.zero_lift_rad", self.camber.zero_lift_rad, -0.2..=0.2, "-0.2 to 0.2 rad"),
+            ("camber.moment", self.camber.moment, -0.3..=0.3, "-0.3 to 0.3"),
             ("root_cutout", cutout, 0.0..=0.9, "0 to 0.9 R"),
             (
                 "tip_loss",

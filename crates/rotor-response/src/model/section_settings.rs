@@ -3,6 +3,18 @@
 use flap_aero::{AirfoilSpan, Mach, StallAirfoil, StallParameters};
 use std::sync::Arc;
 
+/// What the camber of sections adds to linear theory: incidences count from that of zero lift, and a moment is left there. Both
+/// act in the air along the chord, whichever way it goes. Nothing by default; aerofoil tables hold their own.
+///
+/// Source: thin-aerofoil theory (Glauert, The Elements of Aerofoil and Airscrew Theory, 1926).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Camber {
+    /// Incidence of zero lift, nose up, rad; below 0 of sections that are convex above.
+    pub zero_lift_rad: f64,
+    /// Moment about the quarter chord at zero lift, nose up, over `q c^2`.
+    pub moment: f64,
+}
+
 /// How sections stall dynamically.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DynamicStall {

@@ -18,7 +18,8 @@
 //! `V_x = -c y_t`, and the normal does not lean back with a lagged blade: of a blade that turns as a whole about its
 //! root, `w_x v` and `-v_x w_x x` cancel but for `e v_x w_x`.
 //!
-//! and the four section inputs as velocities: `U_T th - U_P`, `c om`, `U_T delta`, `c delta'`.
+//! and the four section inputs as velocities: `U_T th - |U_T| a_0 - U_P`, `c om`, `U_T delta`, `c delta'`, with `a_0` the
+//! incidence of zero lift.
 //! The lift is normal to the local flow: a lift per tangential speed `L/|U_T|` gives
 //! `F_z = L`, `F_y = -s (L/|U_T|) U_P`, which stays finite where the tangential speed vanishes. The
 //! sense `s` of the circulation is the matter of [`ReverseFlow`].
@@ -216,7 +217,7 @@ pub(crate) fn section_flow<T: Number>(
     let (w, phi) = (&motion.w, &motion.phi);
     let theta = point.pitch.angle_rad + blade.twist[i] + phi.value::<T>(lane);
     let theta_rate = point.pitch.rate + phi.rate::<T>(lane);
-    let AirScales { chord, centre, sweep, .. } = blade.air[i];
+    let AirScales { chord, centre, sweep, zero_lift, .. } = blade.air[i];
     // what the air along the blade meets of the twist
     let (mu_sin, mu_cos) = (point.sin * point.advance_ratio, point.cos * point.advance_ratio);
     let twist_slope = phi.slope::<T>(lane) + blade.twist_slope[i];
@@ -236,14 +237,20 @@ pub(crate) fn section_flow<T: Number>(
     };
     let speed = if sweep == 0.0 { u_t } else { u_t + along_span() * sweep };
     let rigid = (point.sin - point.cos * sweep) * point.advance_ratio + blade.grid.x()[i];
+    let [mut inclined, mut inclined_rate] =
+        [u_t * theta - u_p, u_t_rate * theta + u_t * theta_rate - u_p_rate];
+    if zero_lift != 0.0 {
+        inclined -= u_t.abs() * zero_lift;
+        inclined_rate -= u_t.map(f64::signum) * u_t_rate * zero_lift;
+    }
     SectionFlow {
         u_t: speed,
         u_p,
         sense: sense(point.reverse_flow, speed, u_p, rigid),
         pitch: theta,
-        input: [u_t * theta - u_p, om * chord, u_t * delta[0], delta[1] * chord],
+        input: [inclined, om * chord, u_t * delta[0], delta[1] * chord],
         input_rate: [
-            u_t_rate * theta + u_t * theta_rate - u_p_rate,
+            inclined_rate,
             om_rate * chord,
             u_t_rate * delta[0] + u_t * delta[1],
             delta[2] * chord,
@@ -440,7 +447,8 @@ pub(crate) fn section_loads<T: Number>(
         fz: loads.lift,
         fy: -(flow.sense * circulating[0] * flow.u_p + flow.u_t.abs() * flow.u_t * scales.drag)
             * half,
-        moment: loads.moment,
+        moment: loads.moment
+            + flow.u_t.abs() * flow.u_t * (half * scales.chord * scales.camber_moment),
         hinge: loads.hinge,
         circulation: flow.sense * circulatory * (0.5 * scales.chord),
     }

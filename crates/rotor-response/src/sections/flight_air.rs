@@ -465,7 +465,7 @@ impl StationAir {
         let loads = match kind {
             Kind::Whole => self.whole_loads(block, scales, flow, past),
             Kind::FlapSlope => {
-                let frictionless = AirScales { drag: 0.0, ..scales };
+                let frictionless = AirScales { drag: 0.0, camber_moment: 0.0, ..scales };
                 section_loads(frictionless, flow, &self.prompt[block], past)
             }
             Kind::DragAlone => {

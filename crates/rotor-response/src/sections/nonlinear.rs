@@ -129,8 +129,15 @@ mod tests {
     /// What stall adds stands in section axes, scales with the whole speed, and is nothing in reverse flow.
     #[test]
     fn stall_acts_along_the_axes_of_the_section() {
-        let scales =
-            AirScales { density_chord: 0.8, chord: 0.055, drag: 0.01, centre: 0.0, sweep: 0.0 };
+        let scales = AirScales {
+            density_chord: 0.8,
+            chord: 0.055,
+            drag: 0.01,
+            centre: 0.0,
+            sweep: 0.0,
+            zero_lift: 0.0,
+            camber_moment: 0.0,
+        };
         let [normal, chord, moment] = [-0.4, -0.3, -0.2];
         let added = |u_t: f64| {
             let flow = SectionFlow { u_t, u_p: 0.05, pitch: 0.21, ..SectionFlow::default() };

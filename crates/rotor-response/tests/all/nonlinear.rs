@@ -9,7 +9,7 @@ use flap_aero::{AirfoilSpan, AttachedFlowModel, C81Airfoil, C81Table, Mach, Stal
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Twist};
 use rotor_response::{
-    Compressibility, Condition, Controls, Couplings, Discretisation, DynamicStall,
+    Camber, Compressibility, Condition, Controls, Couplings, Discretisation, DynamicStall,
     NonlinearSections, ResponseError, ResponseTolerances, Rotor, RotorModel, RotorSolution,
     RotorSolver,
 };
@@ -159,6 +159,48 @@ fn the_linear_law_in_a_table_is_the_linear_model() {
         // else the table's interpolation in Mach number
         assert!(small < if tip_mach.is_none() { 1e-5 } else { 5e-5 }, "{section:?} {small:e}");
     }
+}
+
+/// Camber is what it is in a table: lift counts from the incidence of zero lift, a moment is left there. The distance falls with
+/// the square of the angles, and without the camber it is one of first order. Quasi-steady sections, for tables have no lag of what camber adds as
+/// the stream pulsates.
+#[test]
+fn the_camber_of_a_linear_section_is_that_of_a_table() {
+    let machs: Vec<f64> = (0..=92).map(|i| 0.01 * f64::from(i)).collect();
+    let distance = |scale: f64, known: f64| {
+        let camber = Camber { zero_lift_rad: -0.02 * scale, moment: -0.015 * scale };
+        let slope = |m: f64| TAU / (1.0 - m * m).sqrt();
+        let lift = |a: f64, m: f64| {
+            let near =
+                if a.abs() > 0.501 * PI { a - PI.copysign(a) } else { a - camber.zero_lift_rad };
+            slope(m) * near
+        };
+        let angles = [-180.0, -90.5, -90.0, 90.0, 90.5, 180.0];
+        let nonlinear =
+            airfoils(table(&angles, &machs, [&lift, &|_, _| 0.0, &|_, _| camber.moment]));
+        let part =
+            Camber { zero_lift_rad: known * camber.zero_lift_rad, moment: known * camber.moment };
+        let linear = RotorModel {
+            drag_coefficient: 0.0,
+            camber: part,
+            ..flapped(AttachedFlowModel::QuasiSteady, Some(0.58))
+        };
+        let tabled = RotorModel { nonlinear, ..linear.clone() };
+        let twist = Twist::Linear { rate_rad: (-8.0 * scale).to_radians() };
+        let blade = BladeProperties::new(BladeSpec { twist, ..paper_spec() }).unwrap();
+        let flight = (0.15, 0.04 * scale, controls(5.0 * scale, scale, -2.0 * scale));
+        let air = (LinearInflow::Prescribed { induced_inflow: 0.01 * scale }, 0.04 * scale);
+        let d = Discretisation::default();
+        let [a, b] = [linear, tabled].map(|m| solve_blade(&blade, m, d, flight, air).unwrap());
+        distance(&a, &b)
+    };
+    let [full, half, small] = [1.0, 0.5, 0.02].map(|scale| distance(scale, 1.0));
+    let without = distance(0.02, 0.0);
+    println!(
+        "{full:.2e}, half the angles {half:.2e}, a fiftieth {small:.2e}, left out {without:.2e}"
+    );
+    assert!(full < 1.5e-2 && half < 0.35 * full && small < 1e-4, "{full:e} {half:e} {small:e}");
+    assert!(without > 0.05, "{without:e}");
 }
 
 /// Out of reach, dynamic stall changes nothing, over the linear model and over a table.

@@ -9,7 +9,7 @@ use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution, ModeCount, TorsionTerms, Twist};
 use rotor_response::{
-    Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
+    Camber, Compressibility, Controls, Couplings, Discretisation, DynamicStall, NonlinearSections,
     Planform, ResponseTolerances, Rotor, RotorModel, SectionOffsets, TrailingEdgeFlap,
     with_flap_masses,
 };
@@ -131,6 +131,10 @@ impl Case {
             },
             lock_number: self.rotor.lock_number,
             drag_coefficient: self.aerodynamics.drag_coefficient,
+            camber: Camber {
+                zero_lift_rad: self.aerodynamics.zero_lift_deg.to_radians(),
+                moment: self.aerodynamics.zero_lift_moment,
+            },
             root_cutout: self.rotor.root_cutout_r,
             tip_loss: self.aerodynamics.tip_loss,
             gravity: match self.rotor.gravity {

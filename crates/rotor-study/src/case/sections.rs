@@ -217,6 +217,12 @@ section! {
         pub reverse_flow: ReverseFlow = ReverseFlow::Gradual, Any, "", "";
         /// Profile drag coefficient, where there is no table.
         pub drag_coefficient: f64 = 0.01, Within(0.0, 1.0), "", "0.01 is usual";
+        /// Incidence of zero lift, nose up, where there is no table: below 0 of sections that are convex above.
+        #[serde(skip_serializing_if = "is_default")]
+        pub zero_lift_deg: f64 = 0.0, Within(-10.0, 10.0), "deg", "-1.3 is usual for a NACA 23012";
+        /// Moment coefficient about the quarter chord at zero lift, nose up, where there is no table.
+        #[serde(skip_serializing_if = "is_default")]
+        pub zero_lift_moment: f64 = 0.0, Within(-0.3, 0.3), "", "-0.01 is usual for a NACA 23012";
         /// Speed of sound; the tip stays below Mach 0.95.
         pub speed_of_sound_m_s: f64 = 340.3, Rule("tip speed / 0.95 to 2000"), "m/s", "";
         /// Aerofoil tables (C81) from root to tip. They replace the linear static lift and moment and

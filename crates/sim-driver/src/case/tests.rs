@@ -363,6 +363,14 @@ fn problems_of_the_blade_name_the_remedy() {
         ("(rotor: (gravity: Moon))", "unknown choice `Moon`"),
         ("(aerodynamics: (tip_loss: 1.2))", "aerodynamics.tip_loss: is 1.2 R, expected 0.5"),
         (
+            "(aerodynamics: (zero_lift_deg: -20))",
+            "aerodynamics.zero_lift_deg: is -20 deg, expected",
+        ),
+        (
+            "(aerodynamics: (zero_lift_moment: -0.01, airfoils: [(station_r: 0.0, table: \"none.c81\")]))",
+            "aerodynamics.zero_lift_moment: is refused: the tables of airfoils hold the camber",
+        ),
+        (
             "(rotor: (ei_flap: 0))",
             "rotor.ei_flap: is 0 m0 Omega^2 R^4, expected a positive finite number",
         ),
