@@ -287,6 +287,11 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
                 settings.baseline_drift,
                 "of Z0 in a cycle, part of the loads",
             ),
+            scalar(
+                "TREND_DRIFT",
+                settings.trend_drift,
+                "of the trend of Z0 in a cycle, part of the loads",
+            ),
             scalar("MEAN_SQUARE_LOAD", scale, "of the loads at the start"),
             scalar("PRIOR_VARIANCE", prior, "of an element of T0 u_full"),
             scalar("START_NOISE_VARIANCE", noise, "of a load"),

@@ -159,13 +159,13 @@ static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linea
 static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outputs[LOADS])
 {
     double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
-    double free_volt[CONTROLS], fastest = 0.0, share;
+    double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2];
     int i, j, k, flap;
     for (i = 0; i < LOADS; ++i) {
         z[i] = s->is_load_lost[i] ? 0.0 : outputs[i];
         for (k = 0; k < CONTROLS; ++k) {
             weighted[i][k] = t[i][k] * (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]);
-            z[i] -= t[i][k] * s->control_volt[k];
+            z[i] -= s->is_flap_lost[k / WIDTH] ? 0.0 : t[i][k] * s->control_volt[k];
         }
     }
     for (j = 0; j < CONTROLS; ++j) {
@@ -195,11 +195,15 @@ static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outp
     }
     for (i = 0; i < PAIRS; ++i) {
         const double *to = &s->target_volt[2 * i], *from = &s->control_volt[2 * i];
-        fastest = fmax(fastest, hypot(to[0] - from[0], to[1] - from[1]));
+        double *largest = &fastest[s->is_flap_lost[2 * i / WIDTH] != 0];
+        *largest = fmax(*largest, hypot(to[0] - from[0], to[1] - from[1]));
     }
-    share = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest, DBL_MIN));
+    /* flaps that are lost go to 0 apart: the others do not wait for them */
+    for (i = 0; i < 2; ++i) {
+        share[i] = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest[i], DBL_MIN));
+    }
     for (k = 0; k < CONTROLS; ++k) {
-        s->control_volt[k] += share * (s->target_volt[k] - s->control_volt[k]);
+        s->control_volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (s->target_volt[k] - s->control_volt[k]);
     }
 }
 

@@ -35,9 +35,9 @@ static void sensitivity(double t[LOADS][CONTROLS], double advance_ratio)
 @@ scheduled.now
 sensitivity(t, advance_ratio);
 @@ adaptive.state
-    /* estimate of (Z0, T u_full) of every load, its covariance, the variance of the noise */
-    double theta[{{NAME}}_LOADS][{{NAME}}_CONTROLS + 1];
-    double covariance[{{NAME}}_CONTROLS + 1][{{NAME}}_CONTROLS + 1];
+    /* estimate of (Z0, T u_full, trend of Z0) of every load, its covariance, the variance of the noise */
+    double theta[{{NAME}}_LOADS][{{NAME}}_CONTROLS + 2];
+    double covariance[{{NAME}}_CONTROLS + 2][{{NAME}}_CONTROLS + 2];
     double noise_variance;
     /* what the last cycle told: 0 as expected, 1 Z0 was freed, 2 T was freed too */
     int observed;
@@ -45,9 +45,9 @@ sensitivity(t, advance_ratio);
     long since_jump;
     double last_volt[{{NAME}}_CONTROLS];
 @@ adaptive.code
-/* Z = Z0 + T u, theta = (Z0, T u_full), phi = (1, u / u_full): a Kalman filter, update in Joseph's form
- * (W. Johnson, NASA TP-1996, 1982; B. Anderson, J. Moore, Optimal Filtering, 1979). */
-enum { SIZE = CONTROLS + 1 };
+/* Z = Z0 + T u, theta = (Z0, T u_full, trend), phi = (1, u / u_full, 0), Z0 goes on by its trend: a Kalman filter, update in
+ * Joseph's form (W. Johnson, NASA TP-1996, 1982; B. Anderson, J. Moore, Optimal Filtering, 1979). */
+enum { TREND = CONTROLS + 1, SIZE = CONTROLS + 2 };
 
 /* Noise that is not told: pairs that its start counts for, memory and pairs until it is relied on. */
 static const double NOISE_START_PAIRS = 4.0, NOISE_MEMORY_PAIRS = 50.0, NOISE_LEARNT_PAIRS = 20.0;
@@ -69,6 +69,7 @@ static void start_estimate({{name}}_state *s)
         for (k = 0; k < CONTROLS; ++k) {
             s->theta[i][k + 1] = T[0][i][k] * FULL_SCALE_VOLT;
         }
+        s->theta[i][TREND] = 0.0;
     }
     for (i = 0; i < SIZE; ++i) {
         for (k = 0; k < SIZE; ++k) {
@@ -76,6 +77,7 @@ static void start_estimate({{name}}_state *s)
         }
     }
     s->covariance[0][0] = s->noise_variance = START_NOISE_VARIANCE;
+    s->covariance[TREND][TREND] = 0.0;
     s->observed = 0;
     s->ceiling = PRIOR_VARIANCE;
     s->pairs = 0.0;
@@ -83,6 +85,25 @@ static void start_estimate({{name}}_state *s)
     for (k = 0; k < CONTROLS; ++k) {
         s->last_volt[k] = 0.0;
     }
+}
+
+/* Lets Z0 go on by its trend. */
+static void follow_trend({{name}}_state *s)
+{
+    int i, k;
+    if (!(TREND_DRIFT > 0.0)) {
+        return;
+    }
+    for (i = 0; i < LOADS; ++i) {
+        s->theta[i][0] += s->theta[i][TREND];
+    }
+    for (k = 0; k < SIZE; ++k) {
+        s->covariance[0][k] += s->covariance[TREND][k];
+    }
+    for (k = 0; k < SIZE; ++k) {
+        s->covariance[k][0] += s->covariance[k][TREND];
+    }
+    s->covariance[TREND][TREND] += square(TREND_DRIFT) * MEAN_SQUARE_LOAD;
 }
 
 /* Adds the random walks: P += Q. */
@@ -94,10 +115,11 @@ static void predict({{name}}_state *s)
         moved += square((s->control_volt[k] - s->last_volt[k]) / FULL_SCALE_VOLT);
         s->last_volt[k] = s->control_volt[k];
     }
+    follow_trend(s);
     s->covariance[0][0] += square(BASELINE_DRIFT) * MEAN_SQUARE_LOAD;
     walk = DRIFT / UNCERTAINTY * sqrt(moved);
     s->ceiling = PRIOR_VARIANCE + CEILING_KEPT * (s->ceiling - PRIOR_VARIANCE);
-    for (k = 1; k < SIZE; ++k) {
+    for (k = 1; k <= CONTROLS; ++k) {
         double excess;
         s->covariance[k][k] += PRIOR_VARIANCE * walk * walk;
         excess = s->covariance[k][k] > s->ceiling ? sqrt(s->ceiling / s->covariance[k][k]) : 1.0;
@@ -133,7 +155,7 @@ static void set_free({{name}}_state *s, int also_t)
     s->covariance[0][0] = MEAN_SQUARE_LOAD;
     if (also_t) {
         s->ceiling = fmax(PRIOR_VARIANCE, PRIOR_VARIANCE / square(UNCERTAINTY));
-        for (k = 1; k < SIZE; ++k) {
+        for (k = 1; k <= CONTROLS; ++k) {
             s->covariance[k][k] += fmax(s->ceiling - s->covariance[k][k], 0.0);
         }
     }
@@ -179,6 +201,7 @@ static void observe({{name}}_state *s, double t[LOADS][CONTROLS], double z[LOADS
     for (k = 0; k < CONTROLS; ++k) {
         phi[k + 1] = s->is_flap_lost[k / WIDTH] ? 0.0 : s->control_volt[k] / FULL_SCALE_VOLT;
     }
+    phi[TREND] = 0.0;
     for (i = 0; i < LOADS; ++i) {
         innovation[i] = s->is_load_lost[i] ? 0.0 : z[i];
         for (k = 0; k < SIZE && !s->is_load_lost[i]; ++k) {

@@ -75,7 +75,9 @@ fn spec(knowledge: TKnowledge) -> ControllerSpec {
 }
 
 fn adaptive(noise_share: Option<f64>) -> TKnowledge {
-    let settings = EstimatorSettings { noise_share, ..EstimatorSettings::in_flight(85.0) };
+    let trend_drift = if noise_share.is_some() { 0.0 } else { 0.01 };
+    let settings =
+        EstimatorSettings { noise_share, trend_drift, ..EstimatorSettings::in_flight(85.0) };
     TKnowledge::Adaptive {
         settings,
         t0: t_at(0.15).turned(1.2, 0.2).unwrap(),

@@ -36,9 +36,9 @@ impl TMatrix {
         Ok(Self { matrix })
     }
 
-    /// Takes over the columns of a matrix behind its first one, times a factor, in place.
+    /// Takes over the columns of a matrix behind its first one, as many as there are, times a factor, in place.
     pub(crate) fn set_scaled(&mut self, theta: &DMatrix<f64>, factor: f64) {
-        let columns = theta.columns_range(1..);
+        let columns = theta.columns(1, self.matrix.ncols());
         self.matrix.zip_apply(&columns, |element, scaled| *element = factor * scaled);
     }
 

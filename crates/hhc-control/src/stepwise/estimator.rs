@@ -18,6 +18,9 @@ pub struct EstimatorSettings {
     pub drift: f64,
     /// Change of Z0 from one pair to the next, share of the loads: the random walk of Z0.
     pub baseline_drift: f64,
+    /// Change from one pair to the next of the trend of Z0, which Z0 follows, share of the loads: the random walk of the trend.
+    /// Zero for a Z0 without one.
+    pub trend_drift: f64,
     /// Whether an innovation beyond all noise frees Z0, and T too where another follows soon.
     pub tests_jumps: bool,
 }
@@ -32,6 +35,7 @@ impl EstimatorSettings {
             uncertainty: 0.2,
             drift: 0.1,
             baseline_drift: 0.01,
+            trend_drift: 0.0,
             tests_jumps: true,
         }
     }
@@ -45,6 +49,7 @@ impl EstimatorSettings {
             uncertainty: 0.5,
             drift: 0.5,
             baseline_drift: 1e-7,
+            trend_drift: 0.0,
             tests_jumps: false,
         }
     }
@@ -56,6 +61,7 @@ impl EstimatorSettings {
         }
         error::check_positive("uncertainty of T0", self.uncertainty)?;
         error::check_not_negative("drift of T", self.drift)?;
+        error::check_not_negative("drift of the trend of Z0", self.trend_drift)?;
         error::check_positive("drift of Z0", self.baseline_drift)
     }
 }
@@ -154,13 +160,15 @@ impl LoadEstimator {
         let scale = mean_square(start.outputs).max(f64::MIN_POSITIVE);
         let noise = settings.noise_share.unwrap_or(NOISE_START);
         let noise_variance = (noise * noise * scale).max(f64::MIN_POSITIVE);
-        let size = controls + 1;
+        // behind Z0 and T stands the trend of Z0
+        let size = controls + 2;
         let mut covariance = DMatrix::identity(size, size) * prior;
         // Z0 is as good as the one measurement it comes from
         covariance[(0, 0)] = noise_variance;
+        covariance[(size - 1, size - 1)] = 0.0;
         let mut this = Self {
             settings: settings.clone(),
-            theta: t.insert_column(0, 0.0),
+            theta: t.insert_column(0, 0.0).insert_column(controls + 1, 0.0),
             t: t0.clone(),
             covariance,
             prior,
@@ -234,7 +242,7 @@ impl LoadEstimator {
         if also_t {
             // as little is known as where nothing was: an element may be anything of their usual size
             self.ceiling = self.prior.max(self.prior / self.settings.uncertainty.powi(2));
-            for k in 1..size {
+            for k in 1..size - 1 {
                 // more on the diagonal keeps what is known of the others
                 let missing = self.ceiling - self.covariance[(k, k)];
                 self.covariance[(k, k)] += missing.max(0.0);
@@ -248,6 +256,7 @@ impl LoadEstimator {
         let moves = control_volt.iter().zip(&self.last_volt);
         let moved = moves.map(|(a, b)| ((a - b) / full_scale).powi(2)).sum::<f64>().sqrt();
         self.last_volt.copy_from_slice(control_volt);
+        self.follow_trend();
         self.covariance[(0, 0)] += self.settings.baseline_drift.powi(2) * self.scale;
         let walk = self.settings.drift / self.settings.uncertainty * moved;
         self.ceiling = self.prior + CEILING_KEPT * (self.ceiling - self.prior);
@@ -259,6 +268,24 @@ impl LoadEstimator {
                 self.covariance.column_mut(k).scale_mut(excess);
             }
         }
+    }
+
+    /// Lets Z0 go on by its trend.
+    fn follow_trend(&mut self) {
+        if self.settings.trend_drift == 0.0 {
+            return;
+        }
+        let (size, loads) = (self.covariance.nrows(), self.theta.nrows());
+        for load in 0..loads {
+            self.theta[(load, 0)] += self.theta[(load, size - 1)];
+        }
+        for k in 0..size {
+            self.covariance[(0, k)] += self.covariance[(size - 1, k)];
+        }
+        for k in 0..size {
+            self.covariance[(k, 0)] += self.covariance[(k, size - 1)];
+        }
+        self.covariance[(size - 1, size - 1)] += self.settings.trend_drift.powi(2) * self.scale;
     }
 
     /// Regressor and innovations of a pair.
@@ -317,7 +344,7 @@ impl LoadEstimator {
     /// [`ControlError::OutOfRange`] for a control that there is not.
     pub fn lose_controls(&mut self, controls: std::ops::Range<usize>) -> Result<(), ControlError> {
         let (found, expected) = (controls.end as f64, "controls of T");
-        let is_known = controls.end < self.regressor.len();
+        let is_known = controls.end <= self.last_volt.len();
         error::check_range(is_known, "controls that are lost", found, expected)?;
         // Z0 goes on from where the loads are
         for control in controls {

@@ -51,8 +51,8 @@ impl RelaxedSettings {
 /// - The optimum keeps the amplitudes; it is never a clipped one. The rate only shortens the step: every part of the way
 ///   to an optimum of a convex cost lowers it.
 /// - *Start without a bump.* The control goes on from whatever acts ([`Self::engage`]).
-/// - *A load is lost*: its weight is 0. *A flap is lost*: its columns are left out, and its voltage goes to 0 within the
-///   rate.
+/// - *A load is lost*: its weight is 0. *A flap is lost*: its columns are left out, its voltage makes nothing of the loads
+///   that are measured, and goes to 0 within the rate. The others do not wait for that.
 ///
 /// Source: W. Johnson, NASA TP-1996 (1982), with the rate term and without (deterministic controllers); J. Shaw,
 /// *Higher harmonic blade pitch control for helicopter vibration reduction* (1980); D. Patt, L. Liu, P. Friedmann, J.
@@ -136,25 +136,41 @@ impl RelaxedController {
         check_outputs(outputs, &self.is_load_lost)?;
         self.form(t, outputs);
         self.is_limited = self.program.solve(&mut self.target);
-        let mut fastest = 0.0_f64;
-        for (to, from) in
-            self.target.as_slice().chunks_exact(2).zip(self.control_volt.chunks_exact(2))
-        {
-            fastest = fastest.max((to[0] - from[0]).hypot(to[1] - from[1]));
-        }
-        let gain = self.settings.gain;
-        let share = gain.min(self.settings.rate_limit_volt / fastest.max(f64::MIN_POSITIVE));
-        for (here, to) in self.control_volt.iter_mut().zip(&self.target) {
-            *here += share * (to - *here);
+        // flaps that are lost go to 0 apart: the others do not wait for them
+        let shares = [false, true].map(|is_lost| self.share(is_lost));
+        for (k, to) in self.target.iter().enumerate() {
+            let is_lost = self.is_flap_lost[k / (2 * self.pairs_of_flap)];
+            self.control_volt[k] += shares[usize::from(is_lost)] * (to - self.control_volt[k]);
         }
         Ok(&self.control_volt)
+    }
+
+    /// Part of the way to the target that the flaps which are lost, or those which are not, go: gain and rate.
+    fn share(&self, is_lost: bool) -> f64 {
+        let pairs = self.target.as_slice().chunks_exact(2).zip(self.control_volt.chunks_exact(2));
+        let mut fastest = 0.0_f64;
+        for (pair, (to, from)) in pairs.enumerate() {
+            if self.is_flap_lost[pair / self.pairs_of_flap] == is_lost {
+                fastest = fastest.max((to[0] - from[0]).hypot(to[1] - from[1]));
+            }
+        }
+        self.settings.gain.min(self.settings.rate_limit_volt / fastest.max(f64::MIN_POSITIVE))
     }
 
     /// The quadratic form of the next control.
     fn form(&mut self, t: &TMatrix, outputs: &[f64]) {
         let t = t.as_matrix();
+        let controls_of_flap = 2 * self.pairs_of_flap;
         let Self {
-            settings, weights, is_load_lost, program, weighted, loads, control_volt, ..
+            settings,
+            weights,
+            is_load_lost,
+            is_flap_lost,
+            program,
+            weighted,
+            loads,
+            control_volt,
+            ..
         } = self;
         weighted.copy_from(t);
         loads.copy_from_slice(outputs);
@@ -163,9 +179,11 @@ impl RelaxedController {
             loads[i] = if is_load_lost[i] { 0.0 } else { loads[i] };
         }
         program.normal.gemm_tr(1.0, t, weighted, 0.0);
-        // J over the next control: Z at zero control, and the rate about the present one
-        for (column, volt) in t.column_iter().zip(control_volt.iter()) {
-            loads.axpy(-volt, &column, 1.0);
+        // J over the next control: Z at zero control of the flaps that move, and the rate about the present one
+        for (k, (column, volt)) in t.column_iter().zip(control_volt.iter()).enumerate() {
+            if !is_flap_lost[k / controls_of_flap] {
+                loads.axpy(-volt, &column, 1.0);
+            }
         }
         program.linear.gemv_tr(1.0, weighted, loads, 0.0);
         let diagonal = settings.effort_weight + settings.rate_weight;
@@ -173,8 +191,7 @@ impl RelaxedController {
             program.normal[(k, k)] += diagonal;
             program.linear[k] -= settings.rate_weight * volt;
         }
-        let controls_of_flap = 2 * self.pairs_of_flap;
-        for (flap, _) in self.is_flap_lost.iter().enumerate().filter(|(_, lost)| **lost) {
+        for (flap, _) in is_flap_lost.iter().enumerate().filter(|(_, lost)| **lost) {
             for k in flap * controls_of_flap..(flap + 1) * controls_of_flap {
                 program.normal.row_mut(k).fill(0.0);
                 program.normal.column_mut(k).fill(0.0);

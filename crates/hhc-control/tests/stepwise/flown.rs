@@ -240,6 +240,49 @@ fn a_dead_flap_is_taken_up_by_the_other() {
     }
 }
 
+/// A flap that is lost while it has much voltage: the other one goes at once where a controller of it alone goes, at its own
+/// rate, whatever the lost one still has.
+#[test]
+fn a_lost_flap_holds_nobody_up() {
+    let rotor = Rotor::new(3, 0.0, 0);
+    let (before, start) = (cost(&rotor.z0), [-20.0, 15.0, 40.0, -50.0]);
+    let of_flap = |flap: usize, controls: &[f64]| controls[2 * flap..2 * flap + 2].to_vec();
+    for lost in [0, 1] {
+        let mut both = controller(3);
+        both.engage(&start).unwrap();
+        both.set_flap_lost(lost, true).unwrap();
+        let columns = rotor.t.columns()[2 * (1 - lost)..][..2].to_vec();
+        let alone_t = TMatrix::from_columns(&columns).unwrap();
+        let layout = ControlLayout::new(1, vec![3]).unwrap();
+        let settings = RelaxedSettings {
+            gain: 0.3,
+            amplitude_limit_volt: vec![LIMIT_VOLT[0]],
+            rate_limit_volt: 10.0,
+            ..RelaxedSettings::of_layout(&layout)
+        };
+        let mut alone = RelaxedController::new(&layout, 12, settings).unwrap();
+        alone.engage(&of_flap(1 - lost, &start)).unwrap();
+        for cycle in 0..20 {
+            let change = alone_t.loads_for(alone.control_volt()).unwrap();
+            let loads: Vec<f64> = rotor.z0.iter().zip(change).map(|(z, dz)| z + dz).collect();
+            both.step(&rotor.t, &loads).unwrap();
+            alone.step(&alone_t, &loads).unwrap();
+            let (found, exact) = (of_flap(1 - lost, both.control_volt()), alone.control_volt());
+            let off = (found[0] - exact[0]).hypot(found[1] - exact[1]);
+            assert!(off < 1e-6, "{lost}, cycle {cycle}: {found:?} {exact:?}");
+            let left = of_flap(lost, both.control_volt());
+            let from = of_flap(lost, &start);
+            let most = (from[0].hypot(from[1]) - 10.0 * (f64::from(cycle) + 1.0)).max(0.0);
+            assert!(left[0].hypot(left[1]) > most - 1e-9, "within its rate: {left:?}");
+            if cycle == 19 {
+                let ratio = cost(&loads) / before;
+                println!("flap {lost} lost: J/J0 {ratio:.3}, it has {left:.2?} V");
+                assert!(left[0].hypot(left[1]) < 0.5, "{left:?}");
+            }
+        }
+    }
+}
+
 /// A load cell that is lost, whatever it shows: the others come to the optimum of what is left.
 #[test]
 fn a_lost_load_cell_is_left_out() {
