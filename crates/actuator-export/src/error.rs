@@ -111,9 +111,6 @@ pub enum ExportError {
         /// Their names.
         stages: String,
     },
-    /// A monitor in a language it is not written in.
-    #[error("a monitor is written in C, Python or JSON; give one of them with --to")]
-    MonitorTarget,
     /// The actuator itself is refused.
     #[error(transparent)]
     Actuator(#[from] PreisachError),

@@ -166,7 +166,7 @@ fn kind_of(stage: &impl std::fmt::Debug) -> String {
 ///
 /// # Errors
 /// Those of [`crate::export`]; a threshold or a memory that is not positive, a memory too long for the time step, a sensor
-/// stage, two actuators that move alike, MATLAB.
+/// stage, two actuators that move alike.
 pub fn export_monitor(
     monitor: &Monitor<'_>,
     name: &str,
@@ -192,10 +192,16 @@ pub fn export_monitor(
             ("c", include_str!("../templates/monitor/main.c")),
         ],
         Target::Python => &[("py", include_str!("../templates/monitor/main.py"))],
-        Target::Matlab | Target::Json => return Err(ExportError::MonitorTarget),
+        Target::Matlab => &[("m", include_str!("../templates/monitor/main.m"))],
+        // written above
+        Target::Json => &[],
     };
     for (ending, text) in templates {
-        let prefix = if target == Target::C { " * " } else { "" };
+        let prefix = match target {
+            Target::C => " * ",
+            Target::Matlab => "    % ",
+            Target::Python | Target::Json => "",
+        };
         let about = prefixed(&broken(MEANING, 100), prefix);
         let words = [
             ("about", about.as_str()),

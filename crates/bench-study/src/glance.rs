@@ -78,11 +78,9 @@ impl Glance {
         let three = |value: f64| significant(value, 3);
         let mut line = self.signal.to_owned();
         if let (Some(hz), Some(cycles)) = (self.frequency_hz, self.cycles) {
-            line = format!(
-                "{line} {} Hz, {} cycles",
-                significant(hz, 4),
-                (cycles * 10.0).round() / 10.0
-            );
+            let cycles = (cycles * 10.0).round() / 10.0;
+            let word = if (cycles - 1.0).abs() < 0.05 { "cycle" } else { "cycles" };
+            line = format!("{line} {} Hz, {cycles} {word}", significant(hz, 4));
         }
         let middle = three(self.middle);
         line = if let Some(slope) = self.slope {

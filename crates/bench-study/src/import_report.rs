@@ -5,7 +5,7 @@ use crate::glance::Glance;
 use measured_data::import::{ImportResult, ImportedRun};
 use measured_data::{Folder, read_dataset, significant};
 use preisach_dyn::identify::Severity;
-use report_page::{Sheet, table};
+use report_page::{Sheet, counted, table};
 use serde::Serialize;
 use std::ops::Deref;
 
@@ -86,7 +86,7 @@ impl ImportReport {
 fn amount(run: &ImportedRun) -> String {
     let ImportedRun { samples_read, samples_written, block, .. } = run;
     match (run.curves, run.step_s) {
-        (Some(curves), _) => format!("{curves} curves, {samples_written} points"),
+        (Some(curves), _) => format!("{}, {samples_written} points", counted(curves, "curve")),
         (None, Some(step)) if *block > 1 => format!(
             "{samples_read} samples read, {samples_written} written: means of {block} samples, step {step} s"
         ),

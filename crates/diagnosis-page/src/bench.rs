@@ -13,7 +13,7 @@ use report_page::pictures::{
     HeatMap, Look, Mark, MarkForm, Panel, PointForm, Row, RowScale, Rows, Series, averaged, legend,
     short, thinned,
 };
-use report_page::{Section, folded};
+use report_page::{Section, counted, folded};
 use rotor_base::Harmonic;
 use std::ops::Range;
 
@@ -135,7 +135,7 @@ impl BenchPage<'_> {
                     "the part about its largest value." }
                 (legend(&looks))
                 (grid(first))
-                @if !rest.is_empty() { (folded(&format!("{} more runs", rest.len()), &grid(rest))) }
+                @if !rest.is_empty() { (folded(&format!("{} more", counted(rest.len(), "run")), &grid(rest))) }
             }
         }
     }
@@ -374,7 +374,7 @@ impl BenchPage<'_> {
             std::iter::once(run.id.clone()).chain(all.map(short)).collect()
         };
         Section {
-            title: format!("{} runs", d.shown.len()),
+            title: counted(d.shown.len(), "run"),
             text: format!(
                 "Roots of mean squares, {}; that of the measured output about its mean.",
                 d.output_unit

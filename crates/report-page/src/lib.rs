@@ -23,7 +23,7 @@ pub use charts::{
 pub use maud::Markup;
 pub use page::{Charts, MADE_HERE, body, folded, grid, heading, page, paragraphs, titled};
 pub use section::Section;
-pub use text::{Column, SCREEN, Sheet, csv_of, table, table_of, unique, wrap};
+pub use text::{Column, SCREEN, Sheet, counted, csv_of, table, table_of, unique, wrap};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

@@ -101,6 +101,11 @@ pub fn unique<T: PartialEq>(items: impl IntoIterator<Item = T>) -> Vec<T> {
     })
 }
 
+/// A number of things in words: `1 run`, `2 runs`; `one` is the word for one of them.
+pub fn counted(count: usize, one: &str) -> String {
+    format!("{count} {one}{}", if count == 1 { "" } else { "s" })
+}
+
 /// A column of a table: its head, and its cell in the row of an item.
 pub type Column<'a, T> = (&'a str, &'a dyn Fn(&T) -> String);
 

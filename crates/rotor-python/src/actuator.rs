@@ -7,7 +7,7 @@ use crate::records::{Description, folder_of, same_count, step_of};
 use actuator_gap::{Commanded, StoredActuator};
 use bench_study::BenchError;
 use bench_study::any_data::{FoundModel, identified_data};
-use bench_study::identification::dataset_place;
+use bench_study::identification::{Comparing, dataset_place};
 use bench_study::stored::{actuator_warnings, read_actuator, write_actuator};
 use measured_data::problem::Place;
 use measured_data::{RonIndex, Source, read_dataset, refuse_other_kind};
@@ -254,7 +254,7 @@ pub(crate) fn identify(
         let mut warnings: Vec<String> = data.warnings().iter().map(ToString::to_string).collect();
         let (glances, subject) = bench_study::glances(&data);
         warnings.extend(bench_study::compared(&glances, subject));
-        let (stored, summary) = match identified_data(&data, &base, Some(&|| ()))? {
+        let (stored, summary) = match identified_data(&data, &base, Some(Comparing::all(&|| ())))? {
             FoundModel::Curves(found) => (found.stored(), json(&found.summary(None))?),
             FoundModel::Records(mut found) => {
                 found.pick(choice)?;

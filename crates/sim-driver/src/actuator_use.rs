@@ -20,7 +20,7 @@ pub fn used(
     of: fn(&StoredActuator, &EvenRecord) -> Result<ActuatorUse, UseError>,
 ) -> Result<ActuatorUse, SimError> {
     let own = read_actuator(&Source::read(actuator)?)?;
-    let given = EvenRecord::read(&Source::read(record)?)?;
+    let given = EvenRecord::read(&Source::read_or_stdin(record)?)?;
     of(&own, &given).map_err(|error| match error {
         UseError::Record(problem) => problem.into(),
         UseError::Actuator(source) => {

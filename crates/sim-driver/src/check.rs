@@ -7,7 +7,7 @@ use crate::files::{
     BenchData, Channel, Channels, DATASET, DataSet, Folder, RonIndex, Source, missing_file,
     read_bench, read_dataset,
 };
-use crate::output::Printable;
+use crate::output::{Printable, counted};
 use crate::problem::{Fault, Place, Problem, Problems};
 use bench_study::identification::gain;
 use bench_study::stored::{GainRule, actuator_warnings, read_actuator};
@@ -68,7 +68,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
     let has_brackets = || source.text.lines().any(|line| line.trim().starts_with('('));
     if kind.is_some_and(|kind| kind.starts_with("Actuator") && !kind.starts_with("ActuatorBench")) {
         let stored = read_actuator(&source)?;
-        let summary = format!("{}, {} runs", stored.title, stored.runs.len());
+        let summary = format!("{}, {}", stored.title, counted(stored.runs.len(), "run"));
         let warnings = actuator_warnings(&stored, |field| index.place(field));
         Ok(CheckResult { file: name, kind: FileKind::Actuator, summary, warnings })
     } else if kind.is_some() || index.contains("runs") {
@@ -139,26 +139,27 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
         DataSet::Bench(data) => bench_warnings(data),
         other => other.warnings().iter().map(Problem::to_string).collect(),
     };
-    let runs = data.run_count();
+    let runs = counted(data.run_count(), "run");
     let labels = |channels: &Channels| channels.both().map(Channel::label).join(" to ");
     let (kind, summary) = match &data {
         DataSet::Bench(data) => {
             let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
-            (FileKind::Bench, format!("{}: {runs} runs, {samples} samples", data.title))
+            (FileKind::Bench, format!("{}: {runs}, {samples} samples", data.title))
         }
         DataSet::Loops(data) => {
             let samples: usize = data.runs.iter().map(|run| run.table.time_s.len()).sum();
             let [input, output] = data.channels.both().map(Channel::label);
             let (low, high) = data.input_range;
             let summary = format!(
-                "{}: {input} to {output}, {runs} runs, {samples} samples, input {low} to {high} ({})",
+                "{}: {input} to {output}, {runs}, {samples} samples, input {low} to {high} ({})",
                 data.title, data.range_rule
             );
             (FileKind::GenericLoop, summary)
         }
         DataSet::Curves(data) => {
             let curves: usize = data.runs.iter().map(|run| run.curves.len()).sum();
-            let summary = format!("{}: {}, {curves} curves", data.title, labels(&data.channels));
+            let summary =
+                format!("{}: {}, {}", data.title, labels(&data.channels), counted(curves, "curve"));
             (FileKind::ReversalCurves, summary)
         }
         DataSet::Sweep(data) => {
@@ -169,7 +170,8 @@ fn check_data(folder: &Folder, file: String) -> Result<CheckResult, Problems> {
             };
             check_columns(data)?;
             let (rows, columns) = (data.points.ids.len(), data.points.columns.len());
-            (kind, format!("{}: {rows} rows, {columns} columns", data.title))
+            let (rows, columns) = (counted(rows, "row"), counted(columns, "column"));
+            (kind, format!("{}: {rows}, {columns}", data.title))
         }
     };
     Ok(CheckResult { file, kind, summary, warnings })

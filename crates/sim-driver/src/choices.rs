@@ -83,15 +83,15 @@ fn unknown(option: &str, given: &str, known: impl Iterator<Item = String>) -> Pr
     Problem::new(Place::file(option), fault)
 }
 
-/// Reads a choice of models from the command line.
-pub(crate) fn model_parser() -> impl TypedValueParser<Value = ModelChoice> {
+/// Reads a choice of models from the command line; with `best` that of cross-validation is one.
+pub(crate) fn model_parser(with_best: bool) -> impl TypedValueParser<Value = ModelChoice> {
     let spelling = |family: Family| spelt(&format!("{family:?}"), '-');
     let best = PossibleValue::new(BEST)
         .help("the one that cross-validation over the training runs chooses");
     // the parser keeps its names as long as the program runs
     let families =
         Family::ALL.map(|family| PossibleValue::new(&*spelling(family).leak()).help(family.name()));
-    PossibleValuesParser::new(std::iter::once(best).chain(families))
+    PossibleValuesParser::new(Some(best).filter(|_| with_best).into_iter().chain(families))
         .map(move |given| Family::ALL.into_iter().find(|family| spelling(*family) == given))
 }
 

@@ -1,4 +1,4 @@
-//! The monitor of a named cause: it sees what is there, and C and Python give its numbers.
+//! The monitor of a named cause: it sees what is there, and C, Python and MATLAB give its numbers.
 
 use crate::common::{
     folder, largest_difference, read_numbers, run, statics, there_is, wanted, write_numbers,
@@ -181,6 +181,56 @@ fn numpy_gives_the_numbers_of_rust() {
     assert!(off <= 1e-12, "{off}");
 }
 
+const SCRIPT: &str = "
+u = fread(fopen('volts', 'rb'), Inf, 'double')';
+y = fread(fopen('angles', 'rb'), Inf, 'double')';
+monitor = watch(u(1));
+rows = monitor.watch_all(u(2:end), y(2:end));
+fwrite(fopen('out', 'wb'), rows', 'double');
+";
+
+#[test]
+fn octave_gives_the_numbers_of_rust() {
+    if !there_is("octave-cli", &["--version"]) {
+        println!("no octave here: nothing tested");
+        return;
+    }
+    let folder = folder("monitor_matlab");
+    let expected = history(&folder, Target::Matlab);
+    std::fs::write(folder.join("script.m"), SCRIPT).unwrap();
+    run(&folder, "octave-cli", &["--no-gui", "--quiet", "--norc", "script.m"]);
+    // what is left is the root of a difference: its square has the digits
+    let squared = |rows: Vec<f64>| -> Vec<f64> {
+        let square = |(k, value): (usize, f64)| if k % 4 == 2 { value * value } else { value };
+        rows.into_iter().enumerate().map(square).collect()
+    };
+    let got = squared(read_numbers(&folder.join("out")));
+    let expected = squared(expected);
+    // before the gap acts the amount is a quotient of roundings
+    let begun = 4 * 100;
+    let first = largest_difference(&got[..begun], &expected[..begun]);
+    let off = largest_difference(&got[begun..], &expected[begun..]);
+    println!("MATLAB code in Octave against Rust: {off:.1e}, {first:.1e} before the gap acts");
+    assert!(first <= 1e-6, "{first}");
+    assert!(off <= 1e-12, "{off}");
+}
+
+#[test]
+fn a_monitor_is_filled_in_every_language() {
+    let models = models();
+    for target in [Target::C, Target::Python, Target::Matlab] {
+        let files = export_monitor(&monitor(&models), "watch", STEP_S, target).unwrap();
+        for (file, text) in files.iter().filter(|(file, _)| file.starts_with("watch.")) {
+            for word in ["{{", "}}", "\t", " \n", "\n\n\n\n"] {
+                assert!(!text.contains(word), "{file}: {word:?}");
+            }
+            let longest = text.lines().map(str::len).max().unwrap();
+            assert!(target != Target::Matlab || longest <= 120, "{file}: {longest}");
+            assert!(text.contains("backlash, 6 um") || file == "watch.c", "{file}");
+        }
+    }
+}
+
 #[test]
 fn json_holds_both_actuators_and_the_threshold() {
     let models = models();
@@ -209,7 +259,6 @@ fn what_cannot_be_watched_is_refused() {
     assert_eq!(without_stages(&models[1], &["Backlash"]).unwrap(), models[0]);
     let text = without_stages(&models[1], &["Delay"]).unwrap_err().to_string();
     assert!(text.contains("no stage `Delay` among those of the actuator: Backlash"), "{text}");
-    assert_eq!(of(&|_| {}, Target::Matlab), ExportError::MonitorTarget);
     let text = of(&|watch| watch.threshold_deg = 0.0, Target::C).to_string();
     assert!(text.contains("the threshold"), "{text}");
     let text = of(&|watch| watch.memory_s = 1e18, Target::Json).to_string();

@@ -14,7 +14,7 @@ use actuator_gap::{DiagnosisError, NotJudged, judged};
 use measured_data::problem::Place;
 use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Finding, FlapZero, Identification, ModelComparison, RecordUse,
+    BenchRecord, Candidates, Family, Finding, FlapZero, Identification, ModelComparison, RecordUse,
     RecordWindows, Settings, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
@@ -126,8 +126,24 @@ pub struct BenchIdentification {
 pub const MODELS_COMPARED: usize = 15;
 
 /// Whether all families of models are fitted to the same records, side by side with the identification, and their table
-/// kept: then what is called after each of [`MODELS_COMPARED`].
-pub type Compared<'a> = Option<&'a (dyn Fn() + Sync)>;
+/// kept.
+pub type Compared<'a> = Option<Comparing<'a>>;
+
+/// A comparison: of which families, the simplest first, and what is called after each of at most [`MODELS_COMPARED`] fits.
+#[derive(Clone, Copy)]
+pub struct Comparing<'a> {
+    /// The families.
+    pub families: &'a [Family],
+    /// What is called.
+    pub done: &'a (dyn Fn() + Sync),
+}
+
+impl<'a> Comparing<'a> {
+    /// All families.
+    pub fn all(done: &'a (dyn Fn() + Sync)) -> Self {
+        Self { families: &Family::ALL, done }
+    }
+}
 
 /// Identifies an actuator from a bench.
 ///
@@ -220,8 +236,11 @@ fn identified(
         }
     }
     let table = || {
-        let candidates = Candidates::default();
-        compared.map(|done| compare_models(&records, &settings, &candidates, done)).transpose()
+        let compare = |Comparing { families, done }: Comparing<'_>| {
+            let candidates = Candidates { families: families.to_vec(), ..Candidates::default() };
+            compare_models(&records, &settings, &candidates, done)
+        };
+        compared.map(compare).transpose()
     };
     let (identification, comparison) = rayon::join(|| identify(&records, &settings), table);
     let mut identification = identification.map_err(|e| heading.failed(e))?;

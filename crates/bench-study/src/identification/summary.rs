@@ -4,10 +4,10 @@ use super::{BenchIdentification, PickReason, subject};
 use crate::stored::{GainRule, StoredChannels, StoredFit};
 use measured_data::significant;
 use preisach_dyn::identify::{
-    DensitySpread, Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison, NoiseSource,
-    RecordUse, Refinement, Settings, Severity, Subject,
+    Channel, DensitySpread, Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison,
+    NoiseSource, RecordUse, Refinement, Settings, Severity, Subject,
 };
-use report_page::{Section, Sheet, table};
+use report_page::{Section, Sheet, counted, table};
 use serde::Serialize;
 
 impl BenchIdentification {
@@ -56,7 +56,7 @@ impl BenchIdentification {
             .chain(not_described)
             .map(|finding| FindingLine {
                 severity: finding.severity(),
-                message: subject.finding(&finding),
+                message: said(subject, &finding, self.settings.deg_per_um),
                 remedy: subject.remedy(&finding),
                 finding,
             })
@@ -81,6 +81,24 @@ impl BenchIdentification {
             if *rule == Settings::default().split { "" } else { " (rule of the start file)" },
         )
     }
+}
+
+/// A finding as a sentence in the units of the data: of an actuator um, though models know flap angles.
+fn said(subject: Subject<'_>, finding: &Finding, deg_per_um: f64) -> String {
+    let Subject::Actuator = subject else { return subject.finding(finding) };
+    let mut own = finding.clone();
+    match &mut own {
+        Finding::ConstantCommand { noise, .. } => {
+            for value in [&mut noise.std_deg, &mut noise.drift_deg_per_min, &mut noise.hum_deg] {
+                *value /= deg_per_um;
+            }
+        }
+        Finding::OutputFalls { slope: value, .. }
+        | Finding::Clipped { channel: Channel::Output, level: value, .. }
+        | Finding::Spikes { channel: Channel::Output, value, .. } => *value /= deg_per_um,
+        _ => {}
+    }
+    Subject::Displacement.finding(&own)
 }
 
 /// The runs of one side of the split.
@@ -276,7 +294,10 @@ impl IdentifyResult {
         for line in self.findings.iter().take(MOST_FINDINGS) {
             screen.labelled(&format!("{:?}", line.severity), &line.message);
         }
-        screen.labelled("NRMSE", "rms error over the standard deviation of the measured output");
+        screen.labelled(
+            "NRMSE",
+            "rms error over the standard deviation of the measured output; the fit of MATLAB is 100 % less that",
+        );
         if let Some(written) = self.written() {
             screen.line(&written);
             if let Some(page) = &self.page_written_to {
@@ -329,7 +350,7 @@ impl IdentifyResult {
             sheet.block(&fit_table(runs.into_iter(), unit));
         }
         sheet.line(format_args!(
-            "\nNRMSE: rms error / standard deviation of the measured output. Of range: rms error with its mean\nremoved / range of the measured output; offset: that mean, measured less simulated, in the output's\nunit. Amplitude and phase error at the strongest harmonic of the command, steady cycles; positive phase:\nthe model lags too much. Structured: share of the output's energy that is neither explained nor noise of\nrepeated cycles. A run with a window is judged inside it."
+            "\nNRMSE: rms error / standard deviation of the measured output; MATLAB's fit is 100 % less that. Of range: rms error with its mean\nremoved / range of the measured output; offset: that mean, measured less simulated, in the output's\nunit. Amplitude and phase error at the strongest harmonic of the command, steady cycles; positive phase:\nthe model lags too much. Structured: share of the output's energy that is neither explained nor noise of\nrepeated cycles. A run with a window is judged inside it."
         ));
         for run in &self.runs {
             if let (Some(rms), Some(most)) = (run.start_up_rms_percent, run.start_up_percent) {
@@ -381,8 +402,8 @@ impl IdentifyResult {
             let worst = runs.iter().max_by(|a, b| a.nrmse_percent.total_cmp(&b.nrmse_percent));
             let text = match worst {
                 Some(worst) => format!(
-                    "{} runs, NRMSE {:.2} % rms, at most {:.2} % ({})",
-                    runs.len(),
+                    "{}, NRMSE {:.2} % rms, at most {:.2} % ({})",
+                    counted(runs.len(), "run"),
                     rms_percent(&runs),
                     worst.nrmse_percent,
                     worst.id
@@ -524,8 +545,13 @@ pub fn fit_table<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> 
     as_text(&fits(runs, input))
 }
 
-/// The same without its form.
+/// The same without its form, sorted by frequency and amplitude.
 pub(crate) fn fits<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -> Section {
+    let mut runs: Vec<&StoredFit> = runs.collect();
+    runs.sort_by(|a, b| {
+        let of_hz = a.frequency_hz.total_cmp(&b.frequency_hz);
+        of_hz.then(a.amplitude_volt.total_cmp(&b.amplitude_volt))
+    });
     section(
         &[
             "run",
@@ -539,7 +565,7 @@ pub(crate) fn fits<'a>(runs: impl Iterator<Item = &'a StoredFit>, input: &str) -
             "phase deg",
             "structured %",
         ],
-        runs.map(|run| {
+        runs.into_iter().map(|run| {
             let (head, rest) = fit_cells(run);
             head.into_iter().chain(rest).collect()
         }),

@@ -3,7 +3,7 @@
 use crate::reversals::{FEWEST, ForcDiagram};
 use preisach_dyn::forc::DiagramPoint;
 use report_page::pictures::{HeatMap, short};
-use report_page::{Markup, grid, titled};
+use report_page::{Markup, counted, grid, titled};
 
 const TITLE: &str = "FORC diagram";
 /// Cells of the picture on a side at most.
@@ -61,8 +61,8 @@ fn picture(own: &ForcDiagram, [input, output]: [&str; 2]) -> Markup {
     HeatMap {
         title: own.id.clone(),
         note: format!(
-            "{} curves, smoothing factor {}; up: centre, across: half-width, {input}; full colour {} {output}/{input}\u{b2}",
-            own.curves,
+            "{}, smoothing factor {}; up: centre, across: half-width, {input}; full colour {} {output}/{input}\u{b2}",
+            counted(own.curves, "curve"),
             own.smoothing,
             short(limit)
         ),

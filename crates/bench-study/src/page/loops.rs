@@ -6,7 +6,7 @@ use crate::identification::{BenchIdentification, fits};
 use preisach_dyn::forc::outputs;
 use preisach_dyn::identify::{BenchRecord, Drive, RecordUse};
 use report_page::pictures::{Look, Panel, PointForm, Series, legend, thinned};
-use report_page::{Markup, folded, grid, titled};
+use report_page::{Markup, counted, folded, grid, titled};
 use std::ops::Range;
 
 const TITLE: &str = "Loops, measured and simulated";
@@ -67,7 +67,7 @@ pub(super) fn section(
     let (first, rest) = order.split_at(order.len().min(RUNS));
     let mut parts = vec![legend(&looks), grid("grid", first.iter().map(panel))];
     if !rest.is_empty() {
-        let title = format!("{} more runs", rest.len());
+        let title = format!("{} more", counted(rest.len(), "run"));
         parts.push(folded(&title, &grid("grid", rest.iter().map(panel))));
     }
     let unit = found.heading.channels.as_ref().map_or("V", |own| own.input.as_str());
@@ -75,6 +75,7 @@ pub(super) fn section(
     let left_out = found.fits.len() - order.len();
     let more = match left_out {
         0 => String::new(),
+        1 => " One run with a smaller error is in the table alone.".to_owned(),
         _ => format!(" {left_out} runs with smaller errors are in the table alone."),
     };
     let text = format!(

@@ -5,7 +5,7 @@ use super::{MEASURED, MODEL, MOST_RUNS, RUNS, SPECTRUM};
 use crate::identification::BenchIdentification;
 use crate::spectra::{ResidualSpectrum, spectra};
 use report_page::pictures::{Look, Panel, Series, legend, short};
-use report_page::{Markup, folded, grid, titled};
+use report_page::{Markup, counted, folded, grid, titled};
 
 /// A panel for every run, the worst first.
 pub(super) fn section(found: &BenchIdentification, simulated: &[Vec<f64>], unit: &str) -> Markup {
@@ -45,7 +45,7 @@ pub(super) fn section(found: &BenchIdentification, simulated: &[Vec<f64>], unit:
     let (first, rest) = spectra.split_at(spectra.len().min(RUNS));
     let mut parts = vec![legend(&looks), grid("grid", first.iter().map(panel))];
     if !rest.is_empty() {
-        let title = format!("{} more runs", rest.len());
+        let title = format!("{} more", counted(rest.len(), "run"));
         parts.push(folded(&title, &grid("grid", rest.iter().map(panel))));
     }
     let mut text = "Measured less simulated, over the samples judged. Where blue lies above grey, the model misses something. White noise is a level line at its standard deviation. What still settles from cycle to cycle counts as noise.".to_owned();

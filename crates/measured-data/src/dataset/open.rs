@@ -16,6 +16,13 @@ const LARGEST_RECORD_MB: u64 = 64;
 /// Fewest samples of a window.
 const LEAST_WINDOW: usize = 16;
 
+/// The step of even times, and a little more: a window may end where the sample after the last one would be, s.
+fn one_step(time_s: &[f64]) -> f64 {
+    let spans = time_s.len().saturating_sub(1).max(1) as f64;
+    let span = time_s.last().zip(time_s.first()).map_or(0.0, |(last, first)| last - first);
+    1.01 * span / spans
+}
+
 /// Keys that not all kinds have, of the data set or its runs, with the kinds that have them.
 const KEYS: [(&str, &str); 10] = [
     ("flap_deg_per_um", "ActuatorBench"),
@@ -161,7 +168,7 @@ impl<'a> OpenDataset<'a> {
         let Some((from_s, to_s)) = self.dataset.runs[number].window_s else { return };
         let samples = samples_within(time_s, Some((from_s, to_s))).len();
         if let (Some(&first_s), Some(&last_s)) = (time_s.first(), time_s.last())
-            && (samples < LEAST_WINDOW || from_s < first_s || to_s > last_s)
+            && (samples < LEAST_WINDOW || from_s < first_s || to_s > last_s + one_step(time_s))
         {
             let message = format!(
                 "the window ({from_s}, {to_s}) s holds {samples} samples of the record, which runs from {first_s} to {last_s} s; give (t0, t1) with t0 < t1 inside the record and at least {LEAST_WINDOW} samples"

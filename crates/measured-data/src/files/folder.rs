@@ -2,6 +2,7 @@
 
 use crate::problem::{Fault, Place, Problem};
 use std::fmt;
+use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -122,11 +123,7 @@ impl Folder {
             Self::Disk(folder) => read_bytes(&folder.join(file), &name)?,
             Self::Embedded(folder) => folder.content(file).ok_or_else(not_shipped)?.to_vec(),
         };
-        let text = String::from_utf8(bytes)
-            .map_err(|e| refused(Fault::NotText { offset: e.utf8_error().valid_up_to() }))?;
-        // a byte-order mark belongs to no format read here
-        let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-        Ok(Source { name, text })
+        as_text(name, bytes)
     }
 
     /// Size of a file of this folder, bytes; 0 if it cannot be told.
@@ -190,6 +187,21 @@ impl Folder {
 }
 
 impl Source {
+    /// Reads a text file on disk; of the path `-` what comes in at standard input.
+    ///
+    /// # Errors
+    /// [`Fault::Unreadable`] or [`Fault::NotText`].
+    pub fn read_or_stdin(path: &Path) -> Result<Self, Problem> {
+        if path.as_os_str() != STANDARD_INPUT {
+            return Self::read(path);
+        }
+        let name = "standard input";
+        let refused = |fault| Problem::new(Place::file(name), fault);
+        let mut bytes = Vec::new();
+        std::io::stdin().read_to_end(&mut bytes).map_err(|e| refused(e.into()))?;
+        as_text(name.to_owned(), bytes)
+    }
+
     /// Reads a text file on disk.
     ///
     /// # Errors
@@ -204,6 +216,20 @@ impl Source {
         Err(Problem::new(place, Fault::Unreadable { reason }))
     }
 }
+
+/// Bytes as a source of a name.
+fn as_text(name: String, bytes: Vec<u8>) -> Result<Source, Problem> {
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let offset = e.utf8_error().valid_up_to();
+        Problem::new(Place::file(&name), Fault::NotText { offset })
+    })?;
+    // a byte-order mark belongs to no format read here
+    let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+    Ok(Source { name, text })
+}
+
+/// The path that stands for standard input.
+pub(crate) const STANDARD_INPUT: &str = "-";
 
 /// Opens a file to be read piece by piece.
 ///

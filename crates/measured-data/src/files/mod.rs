@@ -7,6 +7,7 @@ mod ron_read;
 mod write;
 
 pub use field::{Change, with_field_moved};
+pub(crate) use folder::STANDARD_INPUT;
 pub use folder::{Embedded, Folder, Source, open_reader};
 pub use ron_index::RonIndex;
 pub use ron_read::{RonFile, read_ron, ron_text};

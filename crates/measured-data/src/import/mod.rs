@@ -23,7 +23,7 @@ pub use mat::{MatValue, Variables, mat_file, read_variables};
 
 use crate::dataset::DatasetKind;
 use crate::error::DataError;
-use crate::files::{Folder, Source, open_reader};
+use crate::files::{Folder, STANDARD_INPUT, Source, open_reader};
 use crate::problem::{Fault, Place, Problem, Problems};
 use columns::{Choice, no_effect};
 use flate2::read::MultiGzDecoder;
@@ -236,8 +236,6 @@ impl SourceKind {
     }
 }
 
-/// The path that stands for standard input.
-const STANDARD_INPUT: &str = "-";
 /// The first bytes of a gzip archive.
 const GZIP: &[u8] = b"\x1f\x8b";
 /// Bytes by which a source is recognised, HDF5 by up to 65,544: its signature may stand behind a block of the user.
@@ -299,7 +297,7 @@ fn read_joined(
     paths: [&PathBuf; 2],
     request: &ImportRequest,
 ) -> Result<Option<ReadSource>, Problems> {
-    if paths.iter().any(|path| path.as_os_str() == "-") {
+    if paths.iter().any(|path| path.as_os_str() == STANDARD_INPUT) {
         return Ok(None);
     }
     let open = |path: &PathBuf| {

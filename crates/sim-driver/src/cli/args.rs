@@ -254,8 +254,11 @@ pub struct IdentifyArgs {
     #[arg(long)]
     pub force: bool,
     /// Model to judge and to write; all of them are fitted and compared in any case.
-    #[arg(long, value_parser = model_parser(), default_value = "best")]
+    #[arg(long, value_parser = model_parser(true), default_value = "best")]
     pub model: ModelChoice,
+    /// Fit and compare these families alone, by names of --model.
+    #[arg(long, value_name = "FAMILY", value_parser = model_parser(false), value_delimiter = ',')]
+    pub only: Vec<ModelChoice>,
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
@@ -267,7 +270,8 @@ pub struct PredictArgs {
     /// Actuator file, from `hhc identify`.
     #[arg(value_name = "ACTUATOR.ron")]
     pub actuator: PathBuf,
-    /// Table with `time_s` and `command_V`; with `displacement_um` or `flap_deg` beside, the error is told.
+    /// Table with `time_s` and `command_V`; with `displacement_um` or `flap_deg` beside, the error is told. `-` is standard
+    /// input.
     #[arg(long, value_name = "RECORD.csv")]
     pub input: PathBuf,
     /// Table to write.
@@ -284,7 +288,7 @@ pub struct InvertArgs {
     /// Actuator file, from `hhc identify`.
     #[arg(value_name = "ACTUATOR.ron")]
     pub actuator: PathBuf,
-    /// Table with `time_s` and `displacement_um` or `flap_deg`: the motion that is wanted.
+    /// Table with `time_s` and `displacement_um` or `flap_deg`: the motion that is wanted. `-` is standard input.
     #[arg(long, value_name = "MOTION.csv")]
     pub wanted: PathBuf,
     /// Table to write.
@@ -338,7 +342,7 @@ pub struct ExportArgs {
     #[arg(long, value_name = "HZ", default_value_t = 2000.0)]
     pub sampling_hz: f64,
     /// Write the monitor of a cause instead: the stages of the actuator that it is, such as `Backlash`; from `hhc diagnose`
-    /// they stand in extended.ron. In c, python or json.
+    /// they stand in extended.ron. In c, python, matlab or json.
     #[arg(long, value_name = "STAGES", value_delimiter = ',', requires = "threshold_deg")]
     pub monitor: Vec<String>,
     /// RMS residual that a sound actuator does not reach, deg: beyond it the monitor speaks. `hhc predict` tells that of a record.
@@ -472,9 +476,10 @@ pub struct RecordsArgs {
     /// Folder with reference records; beside those of the data, or `../reference`, if left out.
     #[arg(long, value_name = "DIR")]
     pub reference: Option<PathBuf>,
-    /// Folder to keep what surrogates of a base model leave; computed once for a base and a design.
-    #[arg(long, value_name = "DIR", default_value = "out/cache")]
-    pub cache: PathBuf,
+    /// Folder to keep what surrogates of a base model leave, such as out/cache: computed once for a base and a design. Without
+    /// it nothing is kept.
+    #[arg(long, value_name = "DIR")]
+    pub cache: Option<PathBuf>,
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,

@@ -6,7 +6,7 @@ use crate::SimError;
 use crate::actuator::case_actuators;
 use crate::case::{LoadedCase, load_case, with_actuator_file};
 use crate::diagnose::{
-    CasePoints, Climb, Diagnosis, Findings, FolderStore, PAGE_FILE, PlanText, Planned,
+    CasePoints, Climb, Diagnosis, Findings, KeptStructures, PAGE_FILE, PlanText, Planned,
     PointDiagnosis, PointStory, Question, Record, Records, Specimens, Stage, Story, bench_page,
     both, climb, extended, model_or_case, plan, points_of, records_of, usual_runs,
 };
@@ -37,8 +37,9 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     {
         return of_points(args, model, &sweep, output);
     }
+    let store = KeptStructures::at(args.records.cache.as_deref());
     if let [data] = &args.data[..] {
-        return print(&Story::of(&found_in(args, (model, data), output)?).render(form)?);
+        return print(&Story::of(&found_in(args, (model, data), output, &store)?).render(form)?);
     }
     let names = specimen_names(&args.data)?;
     if args.records.reference.is_some() {
@@ -48,7 +49,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     }
     let mut found = Vec::new();
     for (name, data) in names.into_iter().zip(&args.data) {
-        let own = found_in(args, (model, data), &output.join(&name))?;
+        let own = found_in(args, (model, data), &output.join(&name), &store)?;
         found.push((name, own));
     }
     let specimens = Specimens::of(&found);
@@ -127,14 +128,9 @@ fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
         progress.begin(DIAGNOSIS * done / all, "each cause is put in and diagnosed");
     };
     told(0, 1);
+    let store = KeptStructures::at(args.records.cache.as_deref());
     let planned = Planned { runs: &runs, accuracy, only: &args.only };
-    let found = plan(
-        &model,
-        &planned,
-        &path.display().to_string(),
-        &FolderStore(&args.records.cache),
-        &told,
-    );
+    let found = plan(&model, &planned, &path.display().to_string(), &store, &told);
     progress.finish();
     let text = PlanText(found?);
     if let Some(output) = &args.output {
@@ -148,6 +144,7 @@ fn found_in(
     args: &DiagnoseArgs,
     (model, data): (&Path, &Path),
     output: &Path,
+    store: &KeptStructures<'_>,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
     let (model, case) = model_or_case(model)?;
@@ -156,7 +153,7 @@ fn found_in(
     let question = Question {
         reference,
         only: args.only.clone(),
-        cache: Some(&FolderStore(&args.records.cache)),
+        cache: Some(store),
         given: model.as_ref(),
         begun: Some(&|stage| begin(&progress, stage)),
     };
@@ -216,7 +213,7 @@ pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
     let (measured, reference) = both_records(&args.data, &args.records)?;
     let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
     let progress = Progress::new(DIAGNOSIS + RUNGS);
-    let climbed = climb(&measured, &reference, &loaded, Some(cache), &|climb| match climb {
+    let climbed = climb(&measured, &reference, &loaded, cache.as_deref(), &|climb| match climb {
         Climb::Diagnosis(stage) => begin(&progress, stage),
         Climb::Rung(rung) => progress.begin(DIAGNOSIS + rung, "vibration with each model"),
     });

@@ -8,18 +8,20 @@ use crate::files::{
     DATASET, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, refuse_other_text,
     write_atomic,
 };
-use crate::output::{Format, Printable, print};
-use crate::problem::Place;
+use crate::output::{Format, Printable, counted, print};
+use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use actuator_gap::{ActuatorUse, UseError};
 use bench_study::any_data::{FoundModel, identified_data};
 use bench_study::curves::CurvesResult;
 use bench_study::figures::figure_files;
-use bench_study::identification::{BenchIdentification, IdentifyResult, MODELS_COMPARED};
+use bench_study::identification::{
+    BenchIdentification, Comparing, IdentifyResult, MODELS_COMPARED,
+};
 use bench_study::page::{bench_page, curves_page};
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::{EvenRecord, default_model_file};
-use preisach_dyn::identify::Settings;
+use preisach_dyn::identify::{Family, Settings};
 use report_page::MADE_HERE;
 use std::path::{Path, PathBuf};
 
@@ -61,11 +63,14 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     warn(data.warnings(), args.format.form());
     let (glances, subject) = bench_study::glances(&data);
     warn(&bench_study::compared(&glances, subject), args.format.form());
-    let progress = Progress::new(MODELS_COMPARED);
-    progress.begin(0, &format!("identifying from {} runs", data.run_count()));
+    let families = &families(args)?;
+    // beside the families there are the orders of the one chosen
+    let progress = Progress::new(MODELS_COMPARED + families.len() - Family::ALL.len());
+    progress.begin(0, &format!("identifying from {}", counted(data.run_count(), "run")));
     let [written, page_written_to] =
         [Some(output), page_path.as_ref()].map(|path| path.map(|path| path.display().to_string()));
-    let found = identified_data(&data, &base, Some(&|| progress.step()));
+    let found =
+        identified_data(&data, &base, Some(Comparing { families, done: &|| progress.step() }));
     progress.finish();
     let found = match found? {
         FoundModel::Curves(found) => {
@@ -93,6 +98,23 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         write_texts(folder, figures)?;
     }
     print(&found.text)
+}
+
+/// The families to fit, the simplest first: all of them unless some are named.
+///
+/// # Errors
+/// A model to judge that is not among them.
+fn families(args: &IdentifyArgs) -> Result<Vec<Family>, Problem> {
+    let is_named = |family: &Family| args.only.is_empty() || args.only.contains(&Some(*family));
+    let families: Vec<Family> = Family::ALL.into_iter().filter(is_named).collect();
+    if let Some(model) = args.model.filter(|model| !families.contains(model)) {
+        let message = format!(
+            "leaves out the model to judge, {}: name it here too, or leave --model out",
+            model.name()
+        );
+        return Err(Problem::new(Place::file("--only"), Fault::Refused { message }));
+    }
+    Ok(families)
 }
 
 /// The page beside a model file; none beside a pipe or a device, and where the model itself has its name.

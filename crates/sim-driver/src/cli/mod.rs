@@ -48,7 +48,7 @@ pub fn main() -> ExitCode {
     match outcome {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {
-            say(&error);
+            say(&format_args!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
         // the hook has printed what happened

@@ -1,9 +1,11 @@
-//! Surrogate structures kept on disk between runs, by the content they depend on.
+//! Surrogate structures kept by the content they depend on: on disk between runs, or while the program runs.
 
 use crate::files::write_atomic;
 use actuator_gap::StructureStore;
 use model_gap::discovery::Signal;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Signals of every surrogate on every run.
 type Structures = Vec<Signal>;
@@ -18,6 +20,42 @@ impl StructureStore for FolderStore<'_> {
 
     fn keep(&self, parts: &[&[f64]], structures: &[Signal]) {
         write(self.0, &key(parts), structures);
+    }
+}
+
+/// A place that keeps the structures of surrogates: a folder, or memory until the program ends.
+pub enum KeptStructures<'a> {
+    /// A folder.
+    Folder(FolderStore<'a>),
+    /// Memory, by the hash of what they depend on.
+    Memory(Mutex<BTreeMap<String, Structures>>),
+}
+
+impl<'a> KeptStructures<'a> {
+    /// A folder, where one is given.
+    pub fn at(folder: Option<&'a Path>) -> Self {
+        folder.map_or_else(|| Self::Memory(Mutex::default()), |own| Self::Folder(FolderStore(own)))
+    }
+}
+
+impl StructureStore for KeptStructures<'_> {
+    fn get(&self, parts: &[&[f64]], lengths: &[usize]) -> Option<Structures> {
+        match self {
+            Self::Folder(store) => store.get(parts, lengths),
+            Self::Memory(kept) => {
+                kept.lock().unwrap_or_else(PoisonError::into_inner).get(&key(parts)).cloned()
+            }
+        }
+    }
+
+    fn keep(&self, parts: &[&[f64]], structures: &[Signal]) {
+        match self {
+            Self::Folder(store) => store.keep(parts, structures),
+            Self::Memory(kept) => {
+                let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+                kept.insert(key(parts), structures.to_vec());
+            }
+        }
     }
 }
 

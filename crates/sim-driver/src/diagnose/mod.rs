@@ -11,7 +11,7 @@ mod story;
 pub use actuator_gap::{
     Diagnosis, Plan, Planned, Proposal, Question, Record, Records, Stage, usual_runs,
 };
-pub use cache::FolderStore;
+pub use cache::{FolderStore, KeptStructures};
 pub use given::{GivenRecords, both, model_or_case, points_of, records_of};
 pub use ladder::{Climb, Ladder, Rung, climb};
 pub use model_gap::Findings;
@@ -46,7 +46,7 @@ pub fn plan(
     model: &ActuatorModel,
     planned: &Planned<'_>,
     file: &str,
-    store: &FolderStore<'_>,
+    store: &KeptStructures<'_>,
     told: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<Plan, SimError> {
     let found = actuator_gap::plan(model, planned, Some(store), told);

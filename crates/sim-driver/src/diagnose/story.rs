@@ -3,7 +3,7 @@
 
 use super::{Diagnosis, Findings};
 use crate::files::significant;
-use crate::output::{Printable, Sheet, table, table_of, unique};
+use crate::output::{Printable, Sheet, counted, table, table_of, unique};
 use diagnosis_page::Words;
 use model_gap::Candidate;
 use model_gap::discovery::{Confidence, Found, Screened, Verdict, by_score};
@@ -58,8 +58,7 @@ pub(super) fn common_words(
         not_observable: not_observable(findings),
         screening: Section {
             title: "Screening of every suspect".to_owned(),
-            text: "Drop of chi-square that each could bring, scaled freely, and the floor below which there is nothing to name."
-                .to_owned(),
+            text: LEGEND.replace('\n', " "),
             header: SCREENED.map(str::to_owned).into(),
             rows: screened_rows(candidates, screened).collect(),
         },
@@ -94,19 +93,21 @@ impl Printable for Story<'_> {
         screen.screen()
     }
 
-    /// Everything, in the order of the work.
+    /// Everything, the verdict first, then in the order of the work.
     fn details(&self) -> String {
         let Self { findings, diagnosis: d } = self;
         let Words { verdict, why, gain, next, ground, .. } = words(d, findings);
         let mut sheet = Sheet::default();
+        sheet.line(&verdict);
+        sheet.block(&why);
+        sheet.block(&gain);
+        sheet.line("");
         sheet.block(&ground);
         accuracy(d, &mut sheet);
         energies(d, &mut sheet);
         sheet.line("\nScreening: drop of chi-square that each cause could bring, and the floor that surrogates with nothing missing reach");
         sheet.block(&screening(&d.candidates, &d.finding.screen));
-        sheet.line(format_args!("\n{verdict}"));
-        sheet.block(&why);
-        sheet.block(&gain);
+        sheet.block(LEGEND);
         if let Some(own) = not_observable(findings) {
             sheet.line(own);
         }
@@ -120,10 +121,10 @@ fn base(d: &Diagnosis, sheet: &mut Sheet) {
     let unit = &d.output_unit;
     sheet.line(format_args!("Diagnosis: {}", d.title));
     sheet.line(format_args!(
-        "  {} measured runs against a base model of {}; its error on runs left out of its fit is {:.2} % of the output, the noise {} {unit}",
-        d.run_ids.len(),
+        "  {} against a base model of {}; its error on runs left out of its fit is {:.2} % of the output, the noise {} {unit}",
+        counted(d.run_ids.len(), "measured run"),
         match (d.has_reference, d.given.filter(|own| !own.is_foreign())) {
-            (true, _) => format!("{} reference runs", d.fitted_runs()),
+            (true, _) => counted(d.fitted_runs(), "reference run"),
             (false, Some(_)) => "the simulation given (no reference runs)".to_owned(),
             (false, None) => "the same runs (no reference runs)".to_owned(),
         },
@@ -213,6 +214,12 @@ fn energies(d: &Diagnosis, sheet: &mut Sheet) {
         ],
     ));
 }
+
+/// What the words of the screening mean.
+const LEGEND: &str = "Chi-square counts misfits in units of their noise. Score: by how much a cause could lower it. Floor: what surrogates
+reach, the same runs simulated anew with noise and nothing missing; no name is given below it. Absorbed: share of
+the effect that the base model takes for its own. Most alike: the cause with the most similar effect, with its cosine.
+";
 
 /// Heads of the columns of the screening.
 const SCREENED: [&str; 5] = ["cause", "score", "floor", "absorbed %", "most alike"];

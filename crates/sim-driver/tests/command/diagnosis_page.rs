@@ -112,6 +112,11 @@ fn runs_of_a_bench_have_a_page() {
     bench(&place);
     place.write("case.ron", QUICK_CASE);
     let told = place.hhc(&["diagnose", "case.ron", "--data", "bench", "-o", "out"]).done();
+    // nothing in the folder of work but what was asked for
+    let is_asked_for =
+        |name: &String| ["bench/", "case.ron", "out/"].iter().any(|own| name.starts_with(own));
+    assert!(place.listing().iter().all(is_asked_for), "{:?}", place.listing());
+    assert!(!place.listing().iter().any(|name| name.contains("cache")), "{:?}", place.listing());
     let page = page(&place, "out");
     assert!(page.contains("Diagnosis: grown &lt;/title&gt;&lt;b&gt;"), "escaped");
     // the page says what the terminal says

@@ -16,6 +16,7 @@ mod identify;
 mod identify_page;
 mod import;
 mod lab;
+mod manners;
 mod measured;
 mod place;
 mod points;

@@ -108,6 +108,7 @@ impl Ran {
     pub(crate) fn failed(self, code: i32, parts: &[&str]) -> String {
         assert_eq!(self.code, code, "hhc {}\n{}\n{}", self.args, self.out, self.err);
         assert!(!self.err.contains("panicked") && !self.err.contains("bug"), "{}", self.err);
+        assert!(self.err.contains("error: "), "{}", self.err);
         for part in parts {
             assert!(self.err.contains(part), "hhc {}: no `{part}` in\n{}", self.args, self.err);
         }

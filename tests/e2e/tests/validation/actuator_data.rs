@@ -4,7 +4,7 @@
 use std::sync::LazyLock;
 
 use bench_study::curves::identify_curves;
-use bench_study::identification::{identify_bench, identify_loops};
+use bench_study::identification::{Comparing, identify_bench, identify_loops};
 use preisach_dyn::InverseSettings;
 use preisach_dyn::identify::{Family, ModelComparison, RecordFit, RecordUse, Settings};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -87,7 +87,7 @@ type Tabled = LazyLock<Result<ModelComparison, Failure>>;
 
 static SHIPPED: Tabled = LazyLock::new(|| {
     let data = read_bench(&shipped(SHIPPED_BENCH))?;
-    let found = identify_bench(&data, &Settings::default(), Some(&|| ()))?;
+    let found = identify_bench(&data, &Settings::default(), Some(Comparing::all(&|| ())))?;
     Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
 });
 
@@ -125,7 +125,7 @@ static LOOPS: Tabled = LazyLock::new(|| {
     let DataSet::Loops(data) = read_dataset(&Folder::Disk(folder))? else {
         unreachable!("a data set of loops")
     };
-    let found = identify_loops(&data, &Settings::default(), Some(&|| ()))?;
+    let found = identify_loops(&data, &Settings::default(), Some(Comparing::all(&|| ())))?;
     Ok(found.comparison.unwrap_or_else(|| unreachable!("just compared")))
 });
 
