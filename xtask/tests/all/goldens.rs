@@ -59,7 +59,7 @@ fn everything() -> Filter {
 fn blessed() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let report = run(folder.path(), Mode::Bless, &everything(), computed).unwrap();
-    assert_eq!(report.cases.len(), 25);
+    assert_eq!(report.cases.len(), 29);
     assert!(report.cases.iter().all(|case| matches!(case.verdict, Verdict::Blessed(_))));
     folder
 }
@@ -284,7 +284,7 @@ fn blessing_rewrites_what_changed_and_nothing_else() {
     assert_eq!(std::fs::read_to_string(&untouched).unwrap(), marked);
     assert_eq!(run(folder.path(), Mode::Compare, &everything(), changed).unwrap().exit_code(), 0);
     // nothing is left behind by the atomic writes
-    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 25);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 29);
 }
 
 #[test]
