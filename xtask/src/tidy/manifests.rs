@@ -6,6 +6,7 @@ use super::{Finding, Tree};
 ///
 /// - versions are written once, in the root: a dependency says `workspace = true`;
 /// - the workspace's lints apply;
+/// - a library or program that is not built for unit tests, `test = false`, has none;
 /// - a member below `crates/` has a `README.md` beside it.
 pub fn manifests(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
@@ -20,6 +21,9 @@ pub fn manifests(tree: &Tree) -> Vec<Finding> {
             }
             linted |= section == "lints" && is_inherited(line);
             let entry = !line.is_empty() && !line.starts_with(['#', '[']);
+            if is_without_tests(line) {
+                findings.extend(unit_tests(tree, path, section));
+            }
             if section.ends_with("dependencies") && entry && !is_inherited(line) {
                 let fault = format!(
                     "`{line}`: versions are written once, in the root Cargo.toml; write \
@@ -40,6 +44,50 @@ pub fn manifests(tree: &Tree) -> Vec<Finding> {
         }
     }
     findings
+}
+
+/// What panics on a mistake in a test, by its key in a profile.
+const CHECKS: [&str; 2] = ["debug-assertions", "overflow-checks"];
+
+/// Our own code is tested with debug assertions and overflow checks: the profiles of tests in the root `Cargo.toml` take
+/// them from dependencies alone, which are `"*"` there.
+pub fn profiles(tree: &Tree) -> Vec<Finding> {
+    let path = "Cargo.toml";
+    let mut findings = Vec::new();
+    let mut section = "";
+    for (index, line) in tree.text(path).unwrap_or_default().lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        if line.starts_with('[') {
+            section = line.trim_matches(['[', ']']);
+        }
+        let place = format!("{section}.{line}");
+        let is_of_tests =
+            ["profile.dev", "profile.test"].iter().any(|own| section.starts_with(own));
+        let is_of_dependencies = place.contains(".package.\"*\"");
+        let squeezed: String = line.chars().filter(|c| !c.is_whitespace()).collect();
+        for check in CHECKS {
+            let is_off = squeezed.contains(&format!("{check}=false"));
+            if is_off && is_of_tests && !is_of_dependencies {
+                let fault = format!("{check} of our own code are off in tests; leave them on");
+                findings.push(Finding::at_line(path, index + 1, fault));
+            }
+        }
+    }
+    findings
+}
+
+fn is_without_tests(line: &str) -> bool {
+    line.split('#').next().unwrap_or_default().split_whitespace().eq(["test", "=", "false"])
+}
+
+/// Unit tests that nobody runs: of the program, `[[bin]]`, those of its `main.rs`, of the library all others.
+fn unit_tests(tree: &Tree, manifest: &str, section: &str) -> Vec<Finding> {
+    let sources = manifest.replace("Cargo.toml", "src/");
+    let own = tree.ending_in(".rs").filter(|file| file.path.starts_with(&sources));
+    let own = own.filter(|file| file.path.ends_with("/main.rs") == (section == "bin"));
+    let tested = own.filter(|file| file.text.lines().any(|line| line.trim() == "#[test]"));
+    let fault = format!("has a test that is never run: {manifest} says `test = false`");
+    tested.map(|file| Finding::of_file(&file.path, fault.clone())).collect()
 }
 
 /// Whether a line takes its value from the workspace.

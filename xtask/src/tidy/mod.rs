@@ -14,7 +14,7 @@ pub use documents::{
     REQUIRED_FILES, changelog, floors_of_the_code_map, links, long_rows, named_paths, required,
     summary,
 };
-pub use manifests::manifests;
+pub use manifests::{manifests, profiles};
 pub use rust::{LINE_LIMIT, LONG_FILES, rust};
 pub use tree::{TextFile, Tree};
 pub use validation_ids::{ids_in, validation_ids};
@@ -60,6 +60,7 @@ impl fmt::Display for Finding {
 pub fn check(tree: &Tree, members: &[Member]) -> Vec<Finding> {
     let mut findings = rust(tree);
     findings.extend(manifests(tree));
+    findings.extend(profiles(tree));
     findings.extend(required(tree));
     findings.extend(changelog(tree));
     findings.extend(links(tree));

@@ -214,6 +214,24 @@ fn only_measured_data_and_the_driver_know_files() {
 }
 
 #[test]
+fn tests_without_the_checks_of_our_own_code_are_found() {
+    let profile = |text: &str| tidy::profiles(&Tree::of(&[("Cargo.toml", text)]));
+    let sound = "[profile.dev]\nopt-level = 2 # overflow-checks = false\n[profile.dev.package]\n\
+                 \"*\" = { opt-level = 0, debug-assertions = false, overflow-checks = false }\n\
+                 [profile.dev.package.\"*\"]\noverflow-checks = false\n\
+                 [profile.release]\noverflow-checks = false\n";
+    assert_eq!(profile(sound), []);
+    for off in [
+        "[profile.dev]\noverflow-checks = false",
+        "[profile.test]\ndebug-assertions=false",
+        "[profile.dev.package]\ntrim = { opt-level = 1, debug-assertions = false }",
+        "[profile.dev.package.trim]\noverflow-checks = false",
+    ] {
+        one(&profile(&format!("{sound}{off}\n")), "leave them on");
+    }
+}
+
+#[test]
 fn breaches_in_manifests_are_found() {
     let sound = "[package]\nversion.workspace = true\n[lints]\nworkspace = true\n[dependencies]\n\
                  a.workspace = true\nb = { workspace = true, features = [\"c\"] }\n";
@@ -224,6 +242,22 @@ fn breaches_in_manifests_are_found() {
     one(&tidy::manifests(&tree(&format!("{sound}c = \"1\"\n"))), "workspace = true");
     one(&tidy::manifests(&tree("[package]\n")), "lints");
     one(&tidy::manifests(&Tree::of(&[("crates/trim/Cargo.toml", sound)])), "ten lines");
+    let untested = |target: &str, source: &str, text: &str| {
+        let manifest = format!("{sound}[{target}]\ntest = false # none\n");
+        tidy::manifests(&Tree::of(&[("xtask/Cargo.toml", &manifest), (source, text)]))
+    };
+    let test = "    #[test]\n";
+    one(&untested("lib", "xtask/src/a/b.rs", test), "never run");
+    one(&untested("[bin]", "xtask/src/main.rs", test), "never run");
+    for (target, source, text) in [
+        ("lib", "xtask/src/a/b.rs", "/// `#[test]`\n"),
+        ("lib", "xtask/src/main.rs", test),
+        ("lib", "xtask/tests/a.rs", test),
+        ("[bin]", "xtask/src/a.rs", test),
+        ("[bench]", "xtask/src/main.rs", "fn main() {}"),
+    ] {
+        assert_eq!(untested(target, source, text), [], "{target} {source}");
+    }
 }
 
 #[test]
