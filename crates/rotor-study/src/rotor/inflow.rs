@@ -135,7 +135,9 @@ fn kept(
             "what is given is the last state before, on {azimuths} steps per revolution: of a coarser grid if the case asks for more"
         )
     };
-    format!("wake and trim part after {updates} updates: {error}; {state}. {remedy}")
+    format!(
+        "wake and trim part after {updates} updates: {error}; {state}. First: `response.time_elements: 16` resolves a vortex that lies on a blade. {remedy}"
+    )
 }
 
 /// How the coupling with a wake ended, in a word.
