@@ -24,7 +24,6 @@ mod flight;
 mod flown;
 mod flying_case;
 mod leaving;
-mod limit;
 mod margins;
 mod path;
 mod pilot;

@@ -1,9 +1,10 @@
 //! How wrong T may be along the speeds of a flight: phase, gain, one load, and the speed itself.
 
 use crate::flying_case::FlyingCase;
-use crate::{FlightError, FlightState, limit};
+use crate::{FlightError, FlightState};
 use hhc_control::{FeedbackLaw, RelaxedStep, TMatrix};
 use rayon::prelude::*;
+use rotor_base::limit;
 use rotor_study::HubLoads;
 use serde::Serialize;
 

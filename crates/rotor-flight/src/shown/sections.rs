@@ -1,11 +1,11 @@
 //! Failures, margins and draws of a flight as tables for people.
 
-use crate::limit::Limit;
 use crate::{
     DrawnCase, DrawnController, FailureLine, FailureStudy, FlownCase, FlownController, MarginPoint,
     MarginSet, MarginStudy,
 };
 use report_page::Section;
+use rotor_base::Limit;
 use rotor_study::HubLoads;
 
 /// The controllers of a flight beside each other, for people.

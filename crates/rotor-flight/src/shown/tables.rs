@@ -1,9 +1,9 @@
 //! Flights and failures as CSV text.
 
-use crate::limit::Limit;
 use crate::{
     DrawnCase, FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController, MarginStudy,
 };
+use rotor_base::Limit;
 use rotor_study::HubLoads;
 use std::fmt::Write as _;
 
