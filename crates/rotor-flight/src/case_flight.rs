@@ -1,16 +1,17 @@
 //! The flight that a case describes.
 
-use crate::blades::check_orders;
-use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, RotorPath};
+use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, OwnActuator, RotorPath};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
-use rotor_study::case::{Case, FailedOn, FlightController, FlightValues, Notice, TrimValues};
+use rotor_study::case::{
+    Case, FailedOn, FlapActuator, FlightController, FlightValues, Notice, TrimValues,
+};
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
 use serde::Serialize;
+use std::sync::Arc;
 
-/// What an adaptive controller takes T0 for in flight: its error, and its change over full scale, as parts of itself.
-const T0_UNCERTAINTY: f64 = 0.1;
-const T_DRIFT: f64 = 0.05;
+/// Change of T over full scale that an adaptive controller expects, part of the error that it takes T0 to have.
+const T_DRIFT_OF_ERROR: f64 = 0.5;
 /// Least noise that a controller is told, part of the loads: the rotor is not linear to the last digit.
 const LEAST_NOISE: f64 = 1e-3;
 /// Cycles that count as the end of a flight, and how far `J / J0` may lie from their mean when it has settled.
@@ -52,6 +53,8 @@ pub struct FlightSummary {
     pub end_once_per_rev_ratio: f64,
     /// The same of those at 2 to twice the blade number less one per rev, but for the blade number.
     pub end_other_ratio: f64,
+    /// Both without control.
+    pub end_off_blade_number_at_rest: [f64; 2],
     /// Time from the last disturbance of the schedule until `J / J0` stays within 0.05 of the mean of the last ten cycles, s;
     /// none if it does not before these.
     pub settles_in_s: Option<f64>,
@@ -88,6 +91,8 @@ impl FlightSummary {
             end_cost_ratio: end,
             end_once_per_rev_ratio: at_end(&|p| p.once_per_rev_ratio),
             end_other_ratio: at_end(&|p| p.other_ratio),
+            end_off_blade_number_at_rest: [0, 1]
+                .map(|k| at_end(&|p: &FlightPoint| p.off_blade_number_at_rest[k])),
             settles_in_s,
             limited_share: mean(&|p| f64::from(u8::from(p.is_limited))),
             held_share: mean(&|p| p.held_share),
@@ -111,17 +116,22 @@ pub(crate) fn path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, F
     let knots = if values.is_level() { 1 } else { values.knots };
     let place = |k: usize| low + span * k as f64 / (knots - 1).max(1) as f64;
     let path = RotorPath::new(case, &(0..knots).map(place).collect::<Vec<f64>>())?;
-    let path = match &values.thrust_step {
-        None => path,
-        Some(step) => path.with_thrust_step(&at_thrust(case, step.ratio))?,
-    };
-    match values.failed_flap.filter(|failed| failed.on == FailedOn::OneBlade) {
+    match &values.thrust_step {
         None => Ok(path),
-        Some(failed) => {
-            check_orders(case)?;
-            path.with_one_blade(failed.flap - 1)
-        }
+        Some(step) => path.with_thrust_step(&at_thrust(case, step.ratio)),
     }
+}
+
+/// The same with the blades that are unlike the rest, have an actuator of their own, or a flap that fails alone.
+pub(crate) fn flown_path_of(case: &Case, values: &FlightValues) -> Result<RotorPath, FlightError> {
+    let path = path_of(case, values)?;
+    let failed = values.failed_flap.filter(|failed| failed.on == FailedOn::OneBlade);
+    let own = values.flap_actuators.iter().filter_map(|own| Some((own.blade? - 1, own.flap - 1)));
+    let moved: Vec<(usize, usize)> = own.chain(failed.map(|failed| (0, failed.flap - 1))).collect();
+    if moved.is_empty() && case.rotor.dissimilar_blades.is_empty() {
+        return Ok(path);
+    }
+    path.with_blades(case, &moved)
 }
 
 /// A case whose thrust or weight is multiplied by a ratio; controls that are given stay.
@@ -157,9 +167,20 @@ pub(crate) fn unguided<'a>(
         rate_weight: values.rate_weight,
         ..RelaxedSettings::of_layout(&layout)
     };
+    let own = |(index, own): (usize, &FlapActuator)| {
+        let model = own.model.as_ref().ok_or(FlightError::FlapActuator { index })?;
+        Ok(OwnActuator {
+            flap: own.flap - 1,
+            blade: own.blade.map(|blade| blade - 1),
+            model: Arc::new(ranged(case, model)?),
+            is_told: own.notice == Notice::Told,
+        })
+    };
+    let own_actuators = values.flap_actuators.iter().enumerate().map(own);
     Ok(Flight {
         path,
         model,
+        own_actuators: own_actuators.collect::<Result<_, FlightError>>()?,
         actuator_rev_hz: case.actuator.bench_rev_hz,
         bias: case.control.drive_bias(),
         rotor_rev_hz: case.rotor.omega_rpm / 60.0,
@@ -218,9 +239,10 @@ pub(crate) fn guidance_of(
         FlightController::Fixed => Guidance::Fixed,
         FlightController::Scheduled => Guidance::Scheduled,
         FlightController::Adaptive => Guidance::Adaptive(EstimatorSettings {
-            uncertainty: T0_UNCERTAINTY,
-            drift: T_DRIFT,
+            uncertainty: 0.01 * values.t0_error_percent,
+            drift: T_DRIFT_OF_ERROR * 0.01 * values.t0_error_percent,
             baseline_drift: 0.01 * values.z0_walk_percent,
+            trend_drift: 0.01 * values.z0_trend_percent,
             noise_share: (values.noise_notice == Notice::Told).then(|| told_noise(values)),
             ..EstimatorSettings::in_flight(case.control.amplitude_volt)
         }),

@@ -52,13 +52,29 @@ pub enum FlightError {
         /// Its own error.
         source: PreisachError,
     },
-    /// A flap of one blade alone whose answer the rotor was not asked for.
+    /// A blade unlike the rest.
+    #[error("a blade unlike the rest at an advance ratio of {advance_ratio}: {source}")]
+    Blade {
+        /// Of the knot.
+        advance_ratio: f64,
+        /// Its own error.
+        source: Box<StudyError>,
+    },
+    /// Blades whose own answers the rotor was not asked for.
     #[error(
-        "flap {flap} (from 0) fails on one blade, and the rotor does not know what it does alone: make its path by `RotorPath::with_one_blade`"
+        "{asked} blades move by themselves, and the rotor knows {known} of them: make its path by `RotorPath::with_blades`"
     )]
-    OneBlade {
-        /// Which one.
-        flap: usize,
+    OwnBlade {
+        /// Blades that move by themselves.
+        asked: usize,
+        /// Blades known.
+        known: usize,
+    },
+    /// A flap with an actuator of its own that nobody has read.
+    #[error("`flight.flap_actuators[{index}]` has no model; read its file first and set `model`")]
+    FlapActuator {
+        /// Place in the list.
+        index: usize,
     },
     /// T that a user hands in.
     #[error(transparent)]
@@ -78,11 +94,12 @@ impl FlightError {
     /// Field of the case that asked for what failed.
     pub fn field(&self) -> &str {
         match self {
-            Self::Trim { source, .. } => source.field(),
+            Self::Trim { source, .. } | Self::Blade { source, .. } => source.field(),
             Self::WakeDiverged { .. } => "inflow.model",
             Self::Actuator { .. } => "actuator",
             Self::HandedT(_) | Self::Arrays { .. } => "control.t_file",
-            Self::OneBlade { .. } => "flight.failed_flap",
+            Self::OwnBlade { .. } => "flight.failed_flap",
+            Self::FlapActuator { .. } => "flight.flap_actuators",
             Self::OutOfRange { .. } | Self::Response { .. } | Self::Control(_) => "flight",
         }
     }

@@ -16,8 +16,8 @@ const BIAS_VOLT_PER_DEG: f64 = 2.0;
 /// The actuators of all flaps, each with its own memory.
 #[derive(Debug, Clone)]
 pub struct FlapMarch<'a> {
-    model: &'a ActuatorModel,
-    stepper: Stepper<'a>,
+    models: Vec<&'a ActuatorModel>,
+    steppers: Vec<Stepper<'a>>,
     layout: ControlLayout,
     memories: Vec<ActuatorMemory>,
     bias_volt: Vec<f64>,
@@ -40,8 +40,8 @@ pub struct FlapTurn {
 }
 
 impl<'a> FlapMarch<'a> {
-    /// Flaps at rest about a bias; `rev_hz` is the revolutions per second of the actuators' time. A bias that is centred is
-    /// led by the mean flap angle, one that is held stays.
+    /// Flaps at rest about a bias, all with one actuator; `rev_hz` is the revolutions per second of the actuators' time. A bias
+    /// that is centred is led by the mean flap angle, one that is held stays.
     ///
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
@@ -51,10 +51,30 @@ impl<'a> FlapMarch<'a> {
         rev_hz: f64,
         bias: Bias,
     ) -> Result<Self, FlightError> {
+        Self::of_each(vec![model; layout.flaps()], layout, rev_hz, bias)
+    }
+
+    /// The same with an actuator for each flap of the layout.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; [`FlightError::OutOfRange`] for another number of them.
+    pub fn of_each(
+        models: Vec<&'a ActuatorModel>,
+        layout: &ControlLayout,
+        rev_hz: f64,
+        bias: Bias,
+    ) -> Result<Self, FlightError> {
+        if models.len() != layout.flaps() {
+            let (what, value) = ("number of actuators", models.len() as f64);
+            return Err(FlightError::OutOfRange { what, value, expected: "one for each flap" });
+        }
         let bias_volt = bias.volt();
-        let located = |source| FlightError::Actuator { flap: 0, source };
-        let stepper = model.stepper(1.0 / (rev_hz * SAMPLES as f64)).map_err(located)?;
-        let memory = model.start(bias_volt, StartState::Rest).map_err(located)?;
+        let (mut steppers, mut memories) = (Vec::new(), Vec::new());
+        for (flap, model) in models.iter().enumerate() {
+            let located = |source| FlightError::Actuator { flap, source };
+            steppers.push(model.stepper(1.0 / (rev_hz * SAMPLES as f64)).map_err(located)?);
+            memories.push(model.start(bias_volt, StartState::Rest).map_err(located)?);
+        }
         let harmonics: Vec<u32> = (0..=HARMONICS).collect();
         let analyser = HarmonicAnalyser::new(1, SAMPLES, 1, &harmonics)?;
         let waves = (0..SAMPLES)
@@ -65,10 +85,10 @@ impl<'a> FlapMarch<'a> {
             .flat_map(|(sin, cos)| [cos, sin])
             .collect();
         Ok(Self {
-            model,
-            stepper,
+            models,
+            steppers,
             layout: layout.clone(),
-            memories: vec![memory; layout.flaps()],
+            memories,
             bias_volt: vec![bias_volt; layout.flaps()],
             bias_gain: if bias.is_fixed() { 0.0 } else { BIAS_VOLT_PER_DEG },
             analysers: vec![analyser; layout.flaps()],
@@ -84,10 +104,10 @@ impl<'a> FlapMarch<'a> {
     pub fn revolve(&mut self, control_volt: &[f64]) -> Result<Vec<FlapTurn>, FlightError> {
         self.layout.check(control_volt)?;
         let width = 2 * self.layout.harmonics().len();
-        let range = self.model.range_volt;
         let mut turns = Vec::with_capacity(self.memories.len());
         for (flap, own) in control_volt.chunks_exact(width).enumerate() {
             let mut motion = HarmonicSeries::zero(0);
+            let range = self.models[flap].range_volt;
             let (mut extremes, mut held) = ([f64::INFINITY, f64::NEG_INFINITY], 0_usize);
             for waves in self.waves.chunks_exact(width) {
                 let swing: f64 = waves.iter().zip(own).map(|(wave, volt)| wave * volt).sum();
@@ -95,8 +115,7 @@ impl<'a> FlapMarch<'a> {
                 let volt = wanted.clamp(range.lowest_volt(), range.highest_volt());
                 held += usize::from(volt.to_bits() != wanted.to_bits());
                 extremes = [extremes[0].min(volt), extremes[1].max(volt)];
-                let flap_deg = self
-                    .stepper
+                let flap_deg = self.steppers[flap]
                     .step(&mut self.memories[flap], volt, 0.0)
                     .map_err(|source| FlightError::Actuator { flap, source })?;
                 if let Some(found) = self.analysers[flap].push(&[flap_deg])? {

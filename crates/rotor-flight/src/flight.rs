@@ -1,12 +1,14 @@
 //! What a flight is: rotor, actuators, schedule, and T along it.
 
+use crate::blades::of_order;
 use crate::{FlapMarch, FlapTurn, FlightError, FlightState, RotorPath};
 use hhc_control::{ControlLayout, RelaxedSettings, TMatrix};
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_study::Bias;
 use rotor_study::case::HandedSet;
+use rotor_study::{Bias, HUB_OUTPUTS};
+use std::sync::Arc;
 
 /// Revolutions that settle flaps and bias before T is identified.
 const SETTLED_REV: usize = 12;
@@ -24,8 +26,22 @@ pub struct FlapFailure {
     pub kept_share: f64,
     /// Whether the controller is told at the end of that cycle; it then leaves the flap out on every blade.
     pub is_told: bool,
-    /// Whether it fails on one blade alone; the path must know that flap ([`RotorPath::with_one_blade`]).
+    /// Whether it fails on the first blade alone; the path must know that flap ([`RotorPath::with_blades`]).
     pub is_on_one_blade: bool,
+}
+
+/// A flap with an actuator of its own.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OwnActuator {
+    /// Which one, from 0.
+    pub flap: usize,
+    /// Of which blade, from 0, the path must then know that flap ([`RotorPath::with_blades`]); none for every blade that has none
+    /// of its own there.
+    pub blade: Option<usize>,
+    /// The actuator.
+    pub model: Arc<ActuatorModel>,
+    /// Whether the T that controllers are given knows it. That T is of blades alike: an actuator of one blade is in none.
+    pub is_told: bool,
 }
 
 /// One flight: rotor, actuators, schedule and loop.
@@ -33,8 +49,10 @@ pub struct FlapFailure {
 pub struct Flight<'a> {
     /// The rotor along its path.
     pub path: &'a RotorPath,
-    /// The actuator of every flap.
+    /// The actuator of every flap that has none of its own.
     pub model: &'a ActuatorModel,
+    /// Actuators of single flaps.
+    pub own_actuators: Vec<OwnActuator>,
     /// Flaps and harmonics of the control.
     pub layout: ControlLayout,
     /// Revolutions per second of the actuators' time.
@@ -92,8 +110,32 @@ impl Flight<'_> {
         Ok(())
     }
 
-    pub(crate) fn flaps(&self) -> Result<FlapMarch<'_>, FlightError> {
-        FlapMarch::new(self.model, &self.layout, self.actuator_rev_hz, self.bias)
+    /// The flaps of blades alike, or of one blade (from 0), with the actuators that they have or, for T, those that are told.
+    pub(crate) fn flaps(
+        &self,
+        blade: Option<usize>,
+        of_told: bool,
+    ) -> Result<FlapMarch<'_>, FlightError> {
+        let own = |flap: usize, blade: Option<usize>| {
+            let mut known = self.own_actuators.iter().filter(|own| own.is_told || !of_told);
+            known.find(|own| own.flap == flap && own.blade == blade)
+        };
+        let model = |flap: usize| {
+            let of_blade = blade.and_then(|_| own(flap, blade));
+            of_blade.or_else(|| own(flap, None)).map_or(self.model, |own| &*own.model)
+        };
+        let models = (0..self.layout.flaps()).map(model).collect();
+        FlapMarch::of_each(models, &self.layout, self.actuator_rev_hz, self.bias)
+    }
+
+    /// Hub loads at the blade number per rev in a state, flaps at rest, every blade as it is.
+    pub(crate) fn rest(&self, state: FlightState) -> Result<[f64; HUB_OUTPUTS], FlightError> {
+        let mut loads = self.path.loads(state, &[])?;
+        let others = self.path.own_blade_loads(state, &[], &[])?;
+        for (load, other) in loads.iter_mut().zip(&others[of_order(self.path.blades())]) {
+            *load += other;
+        }
+        Ok(loads)
     }
 
     /// Standard deviation of a load in one revolution, from the loads without control at the start.
@@ -109,23 +151,28 @@ impl Flight<'_> {
         }
     }
 
-    /// What the flaps do under a step of each control up and down, settled; nothing where T is handed in.
+    /// What the flaps do under a step of each control up and down, settled, with the actuators that are told; nothing where T is
+    /// handed in.
     ///
     /// # Errors
     /// [`FlightError::Actuator`], [`FlightError::Control`].
     pub(crate) fn steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
-        if self.handed_t.is_some() { Ok(Vec::new()) } else { self.own_steps() }
+        if self.handed_t.is_some() { Ok(Vec::new()) } else { self.steps_of(true) }
     }
 
-    /// The same whatever is handed in.
+    /// The same whatever is handed in, and with all actuators, told or not.
     ///
     /// # Errors
     /// As [`Self::steps`].
     pub(crate) fn own_steps(&self) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
+        self.steps_of(false)
+    }
+
+    fn steps_of(&self, of_told: bool) -> Result<Vec<[Vec<HarmonicSeries>; 2]>, FlightError> {
         let settled = |control: usize, step_volt: f64| {
             let mut control_volt = self.layout.zero();
             control_volt[control] = step_volt;
-            let mut flaps = self.flaps()?;
+            let mut flaps = self.flaps(None, of_told)?;
             for _ in 1..SETTLED_REV {
                 flaps.revolve(&control_volt)?;
             }

@@ -1,6 +1,6 @@
 //! A case ready to be flown: its rotor along the schedule, its actuator, its flights.
 
-use crate::case_flight::{flight_of, guidance_of, last_disturbance_s, path_of, ranged};
+use crate::case_flight::{flight_of, flown_path_of, guidance_of, last_disturbance_s, ranged};
 use crate::{
     Flight, FlightError, FlightPoint, FlightSummary, FlownCase, FlownController, RotorPath, fly,
 };
@@ -59,7 +59,7 @@ impl<'a> FlyingCase<'a> {
         values: &'a FlightValues,
         model: &ActuatorModel,
     ) -> Result<Self, FlightError> {
-        Ok(Self { case, values, path: path_of(case, values)?, model: ranged(case, model)? })
+        Ok(Self { case, values, path: flown_path_of(case, values)?, model: ranged(case, model)? })
     }
 
     pub(crate) fn values(&self) -> &FlightValues {
@@ -91,7 +91,7 @@ impl<'a> FlyingCase<'a> {
     /// [`FlightError`]: actuators, rotor, controllers.
     pub fn fly(&self, done: &(dyn Fn() + Sync)) -> Result<FlownCase, FlightError> {
         let flight = self.flight_at(&self.values.harmonics)?;
-        let start = flight.path.loads(flight.state_at(0.0), &[])?;
+        let start = flight.rest(flight.state_at(0.0))?;
         let one = |&controller: &FlightController| {
             let points = self.flown(&flight, controller)?;
             done();

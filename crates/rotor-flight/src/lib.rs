@@ -3,8 +3,9 @@
 //! - *Rotor* ([`RotorPath`]): trims at knots of advance ratio, and at a second thrust; loads and their answer to the flaps are
 //!   linearised there and interpolated linearly in between. Every revolution is a steady state.
 //! - *Flaps* ([`FlapMarch`]): every actuator is marched sample by sample through its hysteresis, all harmonics at once, its
-//!   bias slowly led so that the mean flap angle vanishes.
-//! - *One blade* ([`RotorPath::with_one_blade`]): what a flap that fails on one blade alone brings to the hub, at every harmonic.
+//!   bias slowly led so that the mean flap angle vanishes. A flap may have an actuator of its own ([`OwnActuator`]).
+//! - *Blades* ([`RotorPath::with_blades`]): what blades that are unlike the rest, or move a flap otherwise, bring to the hub, at
+//!   every harmonic.
 //! - *Loop* ([`fly`]): a cycle is some revolutions to settle and a window of the analyser; then the next control.
 //! - *Case* ([`FlyingCase`]): the flight that a case describes, its controllers side by side, many draws of its noise, and how
 //!   wrong T may be along it.
@@ -24,7 +25,6 @@ mod flight;
 mod flown;
 mod flying_case;
 mod leaving;
-mod limit;
 mod margins;
 mod path;
 mod pilot;
@@ -35,19 +35,17 @@ pub use case_flight::{FlightSummary, FlownCase, FlownController};
 pub use error::FlightError;
 pub use failures::{Failure, FailureControl, FailureLine, FailureStudy, failures_of_case};
 pub use flaps::{FlapMarch, FlapTurn};
-pub use flight::{FlapFailure, Flight};
+pub use flight::{FlapFailure, Flight, OwnActuator};
 pub use flown::{FlightPoint, fly};
 pub use flying_case::{DrawnCase, DrawnController, FlyingCase};
-pub use leaving::{
-    controllers_of_case, dissimilar_note, exported_case, handed_t, state_space_of_case,
-};
+pub use leaving::{controllers_of_case, exported_case, handed_t, state_space_of_case};
 pub use margins::{MarginPoint, MarginSet, MarginStudy};
-pub use path::{FlightState, RotorPath};
+pub use path::{FlightState, KnownBlade, RotorPath};
 pub use pilot::Guidance;
 pub use shown::{
     BESIDE_FILES, controllers_section, draws_csv, draws_pictures, draws_section, failures_csv,
-    failures_section, flight_csv, harmonic_names, is_own_table, load_amplitudes, margins_csv,
-    margins_pictures, margins_section,
+    failures_section, flight_csv, flight_notes, harmonic_names, is_own_table, load_amplitudes,
+    margins_csv, margins_pictures, margins_section,
 };
 pub use wake_in_time::text::{wake_in_time_csv, wake_in_time_text};
 pub use wake_in_time::{

@@ -1,9 +1,10 @@
 //! How wrong T may be along the speeds of a flight: phase, gain, one load, and the speed itself.
 
 use crate::flying_case::FlyingCase;
-use crate::{FlightError, FlightState, limit};
+use crate::{FlightError, FlightState};
 use hhc_control::{FeedbackLaw, RelaxedStep, TMatrix};
 use rayon::prelude::*;
+use rotor_base::limit;
 use rotor_study::HubLoads;
 use serde::Serialize;
 
@@ -91,7 +92,7 @@ impl FlyingCase<'_> {
 
     fn margin_set(&self, harmonics: Vec<usize>) -> Result<MarginSet, FlightError> {
         let flight = self.flight_at(&harmonics)?;
-        let steps = flight.own_steps()?;
+        let (known, steps) = (flight.steps()?, flight.own_steps()?);
         let at = |advance_ratio: f64| FlightState { advance_ratio, thrust_share: 0.0 };
         let t_at = |mu: f64| flight.own_t_in(at(mu), &steps);
         let knots = self.path().advance_ratios();
@@ -99,7 +100,7 @@ impl FlyingCase<'_> {
         let (weights, step) = (&flight.settings.load_weights, flight.settings.step());
         let point = |(k, &advance_ratio): (usize, &f64)| -> Result<MarginPoint, FlightError> {
             let state = at(advance_ratio);
-            let law = FeedbackLaw::new(&flight.t_in(state, &steps)?, weights)?;
+            let law = FeedbackLaw::new(&flight.t_in(state, &known)?, weights)?;
             let baseline = flight.path.loads(state, &[])?;
             let found = law.margins(&flight.layout, &each[k], step, &baseline)?;
             let loads = (0..HubLoads::NAMES.len())

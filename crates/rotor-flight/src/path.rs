@@ -1,11 +1,12 @@
 //! The rotor along a path of advance ratios, before and after a step of the thrust.
 
 use crate::FlightError;
-use crate::blades::{OneBlade, highest};
+use crate::blades::{AskedBlade, OwnBlade, check_orders, highest};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_study::case::Case;
 use rotor_study::{FlapAuthority, HUB_OUTPUTS, TrimmedRotor};
+use std::collections::BTreeMap;
 
 /// Where on its path a rotor is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,15 +23,26 @@ pub struct FlightState {
 /// Z(mu, s, delta) = sum over the knots about (mu, s) of  w_k ( Z0_k + G_k delta ),
 ///                   w linear in mu and in the share s of the step, held beyond the ends
 /// ```
-/// Truth is this rotor, linear in the motion of the flaps.
+/// Truth is this rotor, linear in the motion of the flaps. Blades that are not as the others ([`Self::with_blades`]) add what
+/// they do otherwise.
 #[derive(Debug, Clone)]
 pub struct RotorPath {
     advance_ratios: Vec<f64>,
     /// Before the step of the thrust; after it, if there is one.
     rows: Vec<Vec<TrimmedRotor>>,
     blades: usize,
-    /// What one flap (from 0) of one blade does at every trim, where it is asked for.
-    one_blade: Option<(usize, Vec<Vec<OneBlade>>)>,
+    /// Blades known one by one, and what they do at every trim.
+    own_blades: Vec<KnownBlade>,
+    own: Vec<Vec<Vec<OwnBlade>>>,
+}
+
+/// A blade that is known by itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownBlade {
+    /// Which one, from 0: it flies `2 pi blade / N_b` ahead of the azimuth of the rotor.
+    pub blade: usize,
+    /// Part of the motion of the others' flaps that its own make at the same voltages.
+    pub flap_motion: f64,
 }
 
 impl RotorPath {
@@ -47,7 +59,8 @@ impl RotorPath {
         }
         let advance_ratios = advance_ratios.to_vec();
         let rows = vec![trims(case, &advance_ratios)?];
-        Ok(Self { advance_ratios, rows, blades: case.rotor.blades, one_blade: None })
+        let blades = case.rotor.blades;
+        Ok(Self { advance_ratios, rows, blades, own_blades: vec![], own: vec![] })
     }
 
     /// The same with a step of the thrust to that of another case, trimmed at the same advance ratios.
@@ -57,28 +70,60 @@ impl RotorPath {
     pub fn with_thrust_step(mut self, after: &Case) -> Result<Self, FlightError> {
         self.rows.truncate(1);
         self.rows.push(trims(after, &self.advance_ratios)?);
-        self.one_blade = None;
+        (self.own_blades, self.own) = (vec![], vec![]);
         Ok(self)
     }
 
-    /// The same with what a flap (from 0) of one blade does to the hub when it moves otherwise than those of the others.
+    /// The same with blades known one by one: those of the case that are unlike the rest, and those some flap of which moves
+    /// otherwise than that of the others, as pairs of blade and flap, from 0.
     ///
     /// # Errors
-    /// [`FlightError::OutOfRange`] for a flap that there is not; [`FlightError::Response`].
-    pub fn with_one_blade(mut self, flap: usize) -> Result<Self, FlightError> {
-        let has_flap = |rotor: &TrimmedRotor| flap < rotor.rotor().model().flaps.len();
-        if !self.rows.iter().flatten().all(has_flap) {
-            let (what, value) = ("flap that fails on one blade (from 0)", flap as f64);
-            return Err(FlightError::OutOfRange { what, value, expected: "one that there is" });
+    /// [`FlightError::OutOfRange`] for a blade or flap that there is not, and for loads of the case that end below twice the
+    /// blade number; [`FlightError::Blade`], [`FlightError::Response`].
+    pub fn with_blades(
+        mut self,
+        case: &Case,
+        moved: &[(usize, usize)],
+    ) -> Result<Self, FlightError> {
+        check_orders(case)?;
+        let mut asked: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for &(blade, flap) in moved {
+            for (what, value, count) in [
+                ("blade that moves a flap by itself (from 0)", blade, self.blades),
+                ("flap that one blade moves by itself (from 0)", flap, case.flaps.len()),
+            ] {
+                if value >= count {
+                    let (value, expected) = (value as f64, "one that there is");
+                    return Err(FlightError::OutOfRange { what, value, expected });
+                }
+            }
+            asked.entry(blade).or_default().push(flap);
         }
+        let unlike = &case.rotor.dissimilar_blades;
+        for one in unlike {
+            asked.insert(one.blade - 1, (0..case.flaps.len()).collect());
+        }
+        let place = |blade: usize| unlike.iter().position(|one| one.blade == blade + 1);
+        let asked: Vec<AskedBlade> = asked
+            .into_iter()
+            .map(|(blade, flaps)| AskedBlade { blade, flaps, unlike: place(blade) })
+            .collect();
+        let known = |one: &AskedBlade| KnownBlade {
+            blade: one.blade,
+            flap_motion: one.unlike.map_or(1.0, |place| unlike[place].flap_motion),
+        };
+        self.own_blades = asked.iter().map(known).collect();
         let at = |(&advance_ratio, rotor): (&f64, &TrimmedRotor)| {
-            let found = OneBlade::new(rotor, flap);
-            found.map_err(|source| FlightError::Response { advance_ratio, source })
+            let here = Case { advance_ratio, ..case.clone() };
+            let solvers = rotor.unlike_solvers(&here);
+            let solvers = solvers
+                .map_err(|source| FlightError::Blade { advance_ratio, source: Box::new(source) })?;
+            OwnBlade::all(rotor, &solvers, &asked)
+                .map_err(|source| FlightError::Response { advance_ratio, source })
         };
         let of_row =
-            |row: &Vec<TrimmedRotor>| self.advance_ratios.iter().zip(row).map(at).collect();
-        let found = self.rows.iter().map(of_row).collect::<Result<Vec<Vec<_>>, FlightError>>()?;
-        self.one_blade = Some((flap, found));
+            |row: &Vec<TrimmedRotor>| self.advance_ratios.par_iter().zip(row).map(at).collect();
+        self.own = self.rows.iter().map(of_row).collect::<Result<_, FlightError>>()?;
         Ok(self)
     }
 
@@ -107,23 +152,35 @@ impl RotorPath {
         Ok(loads)
     }
 
-    /// Hub loads at 1 to twice the blade number less one per rev, twelve each, that a flap (from 0) of one blade adds where it
-    /// moves otherwise than that of the others, by so much, deg; nondimensional. Its inflow is that of the trim.
+    /// Blades known one by one.
+    pub fn own_blades(&self) -> &[KnownBlade] {
+        &self.own_blades
+    }
+
+    /// Hub loads at 1 to twice the blade number less one per rev, twelve each, that the blades known one by one add to those of
+    /// blades alike: `own_deg` are the motions of their flaps, in the order of [`Self::own_blades`], `like_deg` those of the
+    /// others, deg; what is left out is at rest. Nondimensional; the inflow is that of the trim.
     ///
     /// # Errors
-    /// [`FlightError::OneBlade`] for a flap that [`Self::with_one_blade`] was not asked for.
-    pub fn one_blade_loads(
+    /// [`FlightError::OwnBlade`] for motions of more blades than are known.
+    pub fn own_blade_loads(
         &self,
         state: FlightState,
-        flap: usize,
-        change_deg: &HarmonicSeries,
+        like_deg: &[HarmonicSeries],
+        own_deg: &[Vec<HarmonicSeries>],
     ) -> Result<Vec<f64>, FlightError> {
-        let Some((_, known)) = self.one_blade.as_ref().filter(|(own, _)| *own == flap) else {
-            return Err(FlightError::OneBlade { flap });
-        };
+        let known = self.own_blades.len();
+        if own_deg.len() > known {
+            return Err(FlightError::OwnBlade { asked: own_deg.len(), known });
+        }
         let mut loads = vec![0.0; highest(self.blades) * HUB_OUTPUTS];
         for ((row, k), weight) in self.about(state) {
-            known[row][k].add(change_deg, weight, &mut loads);
+            for (i, blade) in
+                self.own.get(row).map_or(&[][..], |of_row| &of_row[k]).iter().enumerate()
+            {
+                let own_deg = own_deg.get(i).map_or(&[][..], Vec::as_slice);
+                blade.add(own_deg, like_deg, weight, &mut loads);
+            }
         }
         Ok(loads)
     }

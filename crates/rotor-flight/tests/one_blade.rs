@@ -10,7 +10,7 @@ use rotor_response::hub_loads;
 use rotor_study::case::{
     AttachedFlowModel, Case, FailedFlap, FailedOn, FlightController, FlightValues, Notice,
 };
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled, weighted};
+use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled};
 
 const ADVANCE_RATIO: f64 = 0.3;
 const BLADES: usize = 4;
@@ -41,11 +41,13 @@ fn one_blade_adds_what_the_nonlinear_rotor_says() {
     sound.set_harmonic(2, Harmonic { cosine: 0.6, sine: -0.3 });
     sound.set_harmonic(4, Harmonic { cosine: -0.2, sine: 0.4 });
     let stuck = HarmonicSeries { mean: 1.0, ..HarmonicSeries::zero(0) };
-    let change = weighted(&stuck, &sound, 1.0);
-    let unknown = path.one_blade_loads(state, 0, &change).unwrap_err();
-    assert!(matches!(unknown, FlightError::OneBlade { flap: 0 }), "{unknown}");
-    assert!(path.clone().with_one_blade(2).is_err(), "there are two flaps");
-    let found = path.with_one_blade(0).unwrap().one_blade_loads(state, 0, &change).unwrap();
+    let (like, own) = (vec![sound.clone()], vec![vec![stuck.clone()]]);
+    let unknown = path.own_blade_loads(state, &like, &own).unwrap_err();
+    assert!(matches!(unknown, FlightError::OwnBlade { asked: 1, known: 0 }), "{unknown}");
+    assert!(path.clone().with_blades(&case, &[(0, 2)]).is_err(), "there are two flaps");
+    assert!(path.clone().with_blades(&case, &[(4, 0)]).is_err(), "there are four blades");
+    let found = path.with_blades(&case, &[(0, 0)]).unwrap();
+    let found = found.own_blade_loads(state, &like, &own).unwrap();
     let rotor = TrimmedRotor::new(&case, None).unwrap();
     let root = |flap: &HarmonicSeries| {
         let rad = scaled(flap, 1f64.to_radians());

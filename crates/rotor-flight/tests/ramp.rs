@@ -28,6 +28,7 @@ fn flight<'a>(path: &'a RotorPath, model: &'a ActuatorModel) -> Flight<'a> {
         actuator_rev_hz: 5.0,
         bias: Bias::Centred { guess_volt: 65.0 },
         handed_t: None,
+        own_actuators: vec![],
         rotor_rev_hz: 383.0 / 60.0,
         advance_ratio: vec![(0.0, 0.15), (10.0, 0.15), (30.0, 0.30)],
         thrust_share: vec![],

@@ -47,6 +47,7 @@ fn flown(path: &RotorPath, model: &ActuatorModel, advance_ratio: f64) -> Vec<Vec
         actuator_rev_hz: 5.0,
         bias: Bias::Centred { guess_volt: 65.0 },
         handed_t: None,
+        own_actuators: vec![],
         rotor_rev_hz: ROTOR_REV_HZ,
         advance_ratio: vec![(0.0, advance_ratio)],
         thrust_share: vec![],

@@ -1,9 +1,9 @@
 //! The actuators of a case: the ideal one, the real one, and what must be said about them.
 
 use crate::SimError;
-use crate::case::{ActuatorSource, LoadedCase};
-use crate::files::{BenchData, Folder, RonIndex, Source, read_bench};
-use crate::problem::{Fault, Place, Problem};
+use crate::case::{ActuatorSource, FlapActuator, LoadedCase};
+use crate::files::{BenchData, Folder, RonIndex, Source, missing_file, read_bench};
+use crate::problem::{Fault, Place, Problem, Problems};
 use bench_study::BenchError;
 use bench_study::identification::{BenchIdentification, dataset_place, identify_bench};
 use bench_study::stored::{StoredActuator, StoredFit, actuator_warnings, read_actuator};
@@ -11,6 +11,7 @@ use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorModel, PeriodicSettings, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// The actuators of a case.
 #[derive(Debug, Clone)]
@@ -103,10 +104,8 @@ pub(crate) fn actuators_with(
         }),
         ActuatorSource::Stored { folder, file } => {
             let source = folder.read(file)?;
-            let stored = read_actuator(&source)?;
-            fits_case(loaded, &stored, &source)?;
-            let index = RonIndex::new(&source.name, &source.text);
-            actuators.warnings.extend(actuator_warnings(&stored, |field| index.place(field)));
+            let (stored, warnings) = stored_actuator(loaded, &source)?;
+            actuators.warnings.extend(warnings);
             actuators.inputs.push(blake3::hash(source.text.as_bytes()).to_hex().to_string());
             Some(stored)
         }
@@ -120,15 +119,45 @@ pub(crate) fn actuators_with(
     Ok(actuators)
 }
 
+/// A stored actuator that fits a case, and what must be said about it.
+///
+/// # Errors
+/// Every problem of the file; those of [`fits_case`].
+pub(crate) fn stored_actuator(
+    loaded: &LoadedCase,
+    source: &Source,
+) -> Result<(StoredActuator, Vec<String>), Problems> {
+    let stored = read_actuator(source)?;
+    fits_case(loaded, &stored, source)?;
+    let index = RonIndex::new(&source.name, &source.text);
+    let warnings = actuator_warnings(&stored, |field| index.place(field));
+    Ok((stored, warnings))
+}
+
+/// A case with the actuators of single flaps of its flight read, and what must be said about them.
+///
+/// # Errors
+/// A file that is missing; those of [`stored_actuator`].
+pub fn with_flap_actuators(loaded: &LoadedCase) -> Result<(LoadedCase, Vec<String>), Problems> {
+    let (mut read, mut warnings) = (loaded.clone(), Vec::new());
+    let own = read.case.flight.iter_mut().flat_map(|flight| &mut flight.flap_actuators);
+    for (i, FlapActuator { path, model, .. }) in own.enumerate() {
+        if !loaded.folder.contains(path) {
+            let place = loaded.index.place(&format!("flight.flap_actuators[{i}].path"));
+            return Err(Problem::new(place, missing_file(&loaded.folder, path)).into());
+        }
+        let (stored, more) = stored_actuator(loaded, &loaded.folder.read(path)?)?;
+        *model = Some(Arc::new(stored.model));
+        warnings.extend(more);
+    }
+    Ok((read, warnings))
+}
+
 /// Refuses a stored model that is no actuator, or that does not know all voltages of the case.
 ///
 /// # Errors
 /// [`Problem`] at the actuator file or at the range of the case.
-pub(crate) fn fits_case(
-    loaded: &LoadedCase,
-    stored: &StoredActuator,
-    source: &Source,
-) -> Result<(), Problem> {
+fn fits_case(loaded: &LoadedCase, stored: &StoredActuator, source: &Source) -> Result<(), Problem> {
     if let Some(channels) = &stored.channels {
         let message = format!(
             "a model from {} to {}: a case needs an actuator, from command_V to displacement_um",

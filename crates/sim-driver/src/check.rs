@@ -1,7 +1,7 @@
 //! `hhc check`: what kind of file it is, and every problem in it.
 
 use crate::SimError;
-use crate::actuator::fits_case;
+use crate::actuator::{stored_actuator, with_flap_actuators};
 use crate::case::{ActuatorSource, LoadedCase, read_case};
 use crate::files::{
     BenchData, Channel, Channels, DATASET, DataSet, Folder, RonIndex, Source, missing_file,
@@ -77,6 +77,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         let loaded = read_case(&source, &Folder::of_file(path))?;
         let mut warnings = loaded.warnings.clone();
         warnings.extend(check_actuator_source(&loaded)?);
+        warnings.extend(with_flap_actuators(&loaded)?.1);
         let doubts = rotor_study::refuse_resonance(&loaded.case)
             .and_then(|()| loaded.case.plausibility_warnings());
         let doubts = doubts.map_err(|error| {
@@ -108,11 +109,7 @@ fn check_actuator_source(loaded: &LoadedCase) -> Result<Vec<String>, Problems> {
             Err(missing(folder, file))
         }
         ActuatorSource::Stored { folder, file } => {
-            let source = folder.read(file)?;
-            let stored = read_actuator(&source)?;
-            fits_case(loaded, &stored, &source)?;
-            let index = RonIndex::new(&source.name, &source.text);
-            Ok(actuator_warnings(&stored, |field| index.place(field)))
+            stored_actuator(loaded, &folder.read(file)?).map(|(_, warnings)| warnings)
         }
     }
 }

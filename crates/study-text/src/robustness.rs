@@ -3,7 +3,8 @@
 use crate::names::flap_name;
 use report_page::pictures::{Look, Mark, MarkForm, PointForm, Row, RowScale, Rows, legend};
 use report_page::{Markup, Section, titled};
-use rotor_study::{Disturbance, MarginLine, RobustnessCell, UNBOUNDED};
+use rotor_base::{Limit, UNBOUNDED};
+use rotor_study::{Disturbance, MarginLine, RobustnessCell};
 
 /// Controllers of the robustness maps, in the order of their cells.
 const CONTROLLERS: [&str; 3] = ["fixed T", "adaptive", "adaptive, told"];
@@ -91,12 +92,12 @@ pub fn robustness_csv(cells: &[RobustnessCell], margins: &[MarginLine]) -> Strin
 /// Every digit of the margins; those of the flaps with spaces between them.
 fn margin_fields(line: &MarginLine) -> [String; 5] {
     let flaps: Vec<String> =
-        line.flap_overshoot_deg.iter().map(|deg| MarginLine::phase(*deg, None)).collect();
+        line.flap_overshoot_deg.iter().map(|deg| Limit::of_phase(*deg).exact()).collect();
     [
         line.condition.to_string(),
-        MarginLine::phase(line.common_phase_deg, None),
-        line.gain(None),
-        MarginLine::phase(line.common_overshoot_deg, None),
+        Limit::of_phase(line.common_phase_deg).exact(),
+        Limit::of_gain(line.common_gain).exact(),
+        Limit::of_phase(line.common_overshoot_deg).exact(),
         flaps.join(" "),
     ]
 }
@@ -143,7 +144,7 @@ fn margin_rows(margins: &[MarginLine]) -> Rows {
         });
         Row {
             label: format!("{}/rev", line.harmonic),
-            note: format!("gain {}", line.gain(Some(1))),
+            note: format!("gain {}", Limit::of_gain(line.common_gain).rounded(1)),
             marks: common.into_iter().chain(flaps).flatten().collect(),
             ..Row::default()
         }
@@ -218,7 +219,7 @@ mod tests {
             common_overshoot_deg: 180.0,
             flap_overshoot_deg: vec![65.0, 180.0],
         };
-        vec![line(3, 4.0), line(4, 0.0)]
+        vec![line(3, 4.0), line(4, f64::INFINITY)]
     }
 
     /// Every row of the table has the margins of its own harmonic; what has no limit is a word.

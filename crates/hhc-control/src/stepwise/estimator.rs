@@ -94,8 +94,8 @@ pub enum Observed {
 /// The estimate `Z = Z0 + T u` with its covariance, the same for every load.
 ///
 /// ```text
-/// Z_i = theta_i . phi,   phi = (1, u / u_full),   theta_i = (Z0_i, T_i u_full)
-/// predict   P += Q,   Q = q_0 on Z0,  (drift |du| / u_full)^2 rms^2 on the elements of T
+/// Z_i = theta_i . phi,   phi = (1, u / u_full, 0),   theta_i = (Z0_i, T_i u_full, s_i),   s the trend of Z0
+/// predict   Z0 += s,  P = F P F' + Q,   Q = q_0 on Z0,  (drift |du| / u_full)^2 rms^2 on the elements of T,  q_s on s
 /// update    k = P phi / (r + phi' P phi),   theta_i += k (Z_i - theta_i . phi)
 ///           P = (I - k phi') P (I - k phi')' + r k k'
 /// noise     r += ( mean(e^2) + phi' P phi - r ) / m,     e the residuals after the update
@@ -104,6 +104,8 @@ pub enum Observed {
 /// - The variance of an element of T never grows beyond that of T0, a freed one's for some ten pairs: directions that are
 ///   not excited cannot burst.
 /// - At rest nothing is added to T, and the walk of Z0 takes what changes.
+/// - A loop moves its control against a ramp of Z0, so that the loads hardly change. Without a trend of Z0 that looks like a T
+///   that is weak.
 /// - A jump is counted as noise only up to the limit of its test, so that noise that was taken for jumps is learnt.
 ///
 /// Source: W. Johnson, NASA TP-1996 (1982), section on identification; B. Anderson, J. Moore, *Optimal Filtering*
@@ -112,7 +114,7 @@ pub enum Observed {
 #[derive(Debug, Clone)]
 pub struct LoadEstimator {
     settings: EstimatorSettings,
-    /// Loads x (1 + controls), and T in 1/V beside it.
+    /// Loads x (1 + controls + 1), and T in 1/V beside it.
     theta: DMatrix<f64>,
     t: TMatrix,
     covariance: DMatrix<f64>,
@@ -376,7 +378,7 @@ impl LoadEstimator {
         &self.t
     }
 
-    /// Covariance of `theta_i = (Z0_i, T_i u_full)`, the same for every load: nondimensional loads squared.
+    /// Covariance of `theta_i = (Z0_i, T_i u_full, trend of Z0_i)`, the same for every load: nondimensional loads squared.
     pub fn covariance(&self) -> &DMatrix<f64> {
         &self.covariance
     }

@@ -171,7 +171,7 @@ fn conditions(case: &Case, points: &[(FlightState, &TrimmedRotor)]) -> LabelledA
 }
 
 /// What a case with blades unlike the rest is told.
-pub fn dissimilar_note(case: &Case) -> Option<String> {
+pub(crate) fn dissimilar_note(case: &Case) -> Option<String> {
     let told = "`rotor.dissimilar_blades` is left out: all blades are alike here.";
     (!case.rotor.dissimilar_blades.is_empty()).then(|| told.to_owned())
 }

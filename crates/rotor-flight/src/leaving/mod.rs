@@ -6,6 +6,7 @@ mod labels;
 mod settings;
 mod state_space;
 
-pub use exported::{controllers_of_case, dissimilar_note, exported_case};
+pub(crate) use exported::dissimilar_note;
+pub use exported::{controllers_of_case, exported_case};
 pub use handed::handed_t;
 pub use state_space::state_space_of_case;

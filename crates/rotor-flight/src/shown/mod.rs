@@ -1,9 +1,11 @@
 //! Flights, failures, margins and draws as people and programs read them.
 
+mod notes;
 mod pictures;
 mod sections;
 mod tables;
 
+pub use notes::flight_notes;
 pub use pictures::{draws_pictures, margins_pictures};
 pub use sections::{
     controllers_section, draws_section, failures_section, harmonic_names, margins_section,

@@ -1,9 +1,9 @@
 //! Draws and margins of a flight as pictures of a page.
 
-use crate::limit::Limit;
 use crate::{DrawnCase, DrawnController, MarginPoint, MarginSet, MarginStudy, harmonic_names};
 use report_page::pictures::{HeatMap, Look, Panel, PointForm, Series, legend};
 use report_page::{Markup, grid};
+use rotor_base::Limit;
 
 /// A line through points and a dot on each of them, so that one point is seen too.
 fn line(name: &str, colour: usize, points: Vec<[f64; 2]>) -> [Series; 2] {

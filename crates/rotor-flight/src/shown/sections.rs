@@ -1,11 +1,11 @@
 //! Failures, margins and draws of a flight as tables for people.
 
-use crate::limit::Limit;
 use crate::{
     DrawnCase, DrawnController, FailureLine, FailureStudy, FlownCase, FlownController, MarginPoint,
     MarginSet, MarginStudy,
 };
 use report_page::Section;
+use rotor_base::Limit;
 use rotor_study::HubLoads;
 
 /// The controllers of a flight beside each other, for people.
@@ -17,8 +17,8 @@ pub fn controllers_section(flown: &FlownCase) -> Section {
             format!("{:.3}", s.mean_cost_ratio),
             format!("{:.2} at {:.1} s", s.worst_cost_ratio, s.worst_at_s),
             format!("{:.3}", s.end_cost_ratio),
-            format!("{:.3}", s.end_once_per_rev_ratio),
-            format!("{:.3}", s.end_other_ratio),
+            beside(s.end_once_per_rev_ratio, s.end_off_blade_number_at_rest[0]),
+            beside(s.end_other_ratio, s.end_off_blade_number_at_rest[1]),
             s.settles_in_s.map_or_else(|| "no".to_owned(), |time_s| format!("{time_s:.1} s")),
             format!("{:.0} %", 100.0 * s.limited_share),
             format!("{:.1} %", 100.0 * s.held_share),
@@ -39,10 +39,15 @@ pub fn controllers_section(flown: &FlownCase) -> Section {
     ];
     Section {
         title: "Controllers".to_owned(),
-        text: "J0 is without control in the same state. 1/rev, others: at the end, J of the loads at 1/rev and at the other harmonics that blades alike cancel, over J0. Settles: from the last change until J/J0 stays within 0.05 of its end. At limit: cycles in which an amplitude is at its limit. Held: samples of the voltage at an end of the range. Power: of the actuators of one blade.".to_owned(),
+        text: "J0 is without control in the same state. 1/rev, others: at the end, J of the loads at 1/rev and at the other harmonics that blades alike cancel, over J0, in brackets without control where it is not 0. Settles: from the last change until J/J0 stays within 0.05 of its end. At limit: cycles in which an amplitude is at its limit. Held: samples of the voltage at an end of the range. Power: of the actuators of one blade.".to_owned(),
         header: header.map(str::to_owned).into(),
         rows: flown.flights.iter().map(row).collect(),
     }
+}
+
+/// A share with control, and in brackets that without where there is one.
+fn beside(with: f64, without: f64) -> String {
+    if without > 0.0 { format!("{with:.3} ({without:.3})") } else { format!("{with:.3}") }
 }
 
 /// What control reaches under failures, for people.

@@ -1,9 +1,9 @@
 //! Flights and failures as CSV text.
 
-use crate::limit::Limit;
 use crate::{
     DrawnCase, FailureLine, FailureStudy, FlightPoint, FlownCase, FlownController, MarginStudy,
 };
+use rotor_base::Limit;
 use rotor_study::HubLoads;
 use std::fmt::Write as _;
 
@@ -55,6 +55,8 @@ fn fields(
         ("j_over_j0", point.cost_ratio),
         ("once_per_rev_over_j0", point.once_per_rev_ratio),
         ("others_over_j0", point.other_ratio),
+        ("once_per_rev_over_j0_without_control", point.off_blade_number_at_rest[0]),
+        ("others_over_j0_without_control", point.off_blade_number_at_rest[1]),
         ("power_W", point.power_watt),
         ("limited", f64::from(u8::from(point.is_limited))),
         ("held_percent", 100.0 * point.held_share),

@@ -1,7 +1,9 @@
 //! The section of a case that describes a flight in time.
 
 use super::field::{Value, section, values, variant_names};
+use preisach_dyn::ActuatorModel;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// How a controller knows T along a flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -74,6 +76,9 @@ section! {
         /// A flap that fails, such as `(flap: 1, at_s: 50)`; left out, none.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub failed_flap: Option<FailedFlap> = None, Any, "", "";
+        /// Flaps with an actuator of their own, such as `(flap: 2, path: "outboard.ron")`; the others have that of the case.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        pub flap_actuators: Vec<FlapActuator> = vec![], Any, "", "";
         /// Standard deviation of the noise of a load in one revolution, over the root mean square of the loads
         /// at the start.
         pub noise_percent: f64 = 3.0, Within(0.0, 100.0), "%", "3.16 % are 30 dB, 10 % are 20 dB";
@@ -106,6 +111,11 @@ section! {
         pub noise_notice: Notice = Notice::Untold, Any, "", "";
         /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.
         pub z0_walk_percent: f64 = 20.0, Within(1e-2, 100.0), "%", "20 % for manoeuvres, 1 % for steady flight";
+        /// Change of the trend of Z0 that it expects, likewise: Z0 goes on by its trend from cycle to cycle.
+        pub z0_trend_percent: f64 = 0.0, Within(0.0, 100.0), "%", "2 % for ramps with a T0 that may be far off, 0 for none";
+        /// What the adaptive controller takes T0 for at the start: its error over itself. T may change by half of that
+        /// over full scale.
+        pub t0_error_percent: f64 = 10.0, Within(1e-2, 200.0), "%", "10 % for a T0 of a model that is right, 50 % for one that may be far off";
     }
 }
 
@@ -127,6 +137,26 @@ section! {
         pub ratio: f64 = 1.1, Within(0.5, 1.5), "", "1.1 is a tenth more";
         /// Time in which it is made, linearly.
         pub length_s: f64 = 0.5, Within(0.0, 3600.0), "s", "0 is a jump";
+    }
+}
+
+section! {
+    /// A flap with an actuator of its own in flight.
+    #[serde(deny_unknown_fields, default)]
+    pub struct FlapActuator {
+        /// Its number, counted from the root.
+        pub flap: usize = 1, Rule("1 to the number of flaps"), "", "";
+        /// The blade whose flap it is; left out, every blade that has none of its own there.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub blade: Option<usize> = None, Rule("1 to the number of blades"), "", "";
+        /// Actuator file, as `hhc identify` writes it, from the folder of the case.
+        pub path: String = String::new(), Any, "", "an actuator file such as \"outboard.ron\"";
+        /// Whether the T that controllers are given knows it. That T is of blades alike: an actuator of one blade is in none.
+        pub notice: Notice = Notice::Told, Any, "", "";
+    }
+    apart {
+        /// What `path` holds; none until it is read.
+        pub model: Option<Arc<ActuatorModel>> = None;
     }
 }
 

@@ -41,7 +41,9 @@ pub use control::{
 };
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
-pub use flight::{FailedFlap, FailedOn, FlightController, FlightValues, Notice, ThrustStep};
+pub use flight::{
+    FailedFlap, FailedOn, FlapActuator, FlightController, FlightValues, Notice, ThrustStep,
+};
 pub use handed_t::{HandedSet, HandedT, HandedTError};
 pub use measured::{MeasuredFile, MeasuredFiles, MeasuredSection, UncertainField};
 pub use plausibility::PlausibilityWarning;

@@ -5,8 +5,8 @@ use super::rules_blade::check_blade;
 use super::{
     ActuatorChoice, AirfoilStation, AttachedFlowModel, BiasChoice, Case, CaseFault, CaseFaults,
     CompressibilityChoice, ControlActuator, ControlValues, ControllerChoice, EffortChoice,
-    FlightValues, FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice, WakeMethod,
-    WakeSymmetry,
+    FlapActuator, FlightValues, FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice,
+    WakeMethod, WakeSymmetry,
 };
 
 // rules between fields
@@ -27,6 +27,7 @@ const FLIES_NONE_OR_TWICE: &str =
     "give each controller once, at least one of them: controllers: [Fixed, Scheduled, Adaptive]";
 const FLIES_WITHOUT_FLAPS: &str =
     "the blade has no flap to control with; give flaps, or leave the flight out";
+const TWO_ACTUATORS: &str = "this flap has an actuator in the list already; give each once";
 const NEEDS_THRUST: &str = "controls that are given have no thrust to step; trim: Propulsive or WindTunnel, or leave thrust_step out";
 /// Highest harmonic of the flaps that the linearised rotor of a flight knows, per rev.
 const HIGHEST_FLOWN: usize = 10;
@@ -272,11 +273,20 @@ fn check_flight(check: &mut Checker, case: &Case, flight: &FlightValues) {
             check.broken("flight.thrust_step", NEEDS_THRUST);
         }
     }
+    let flaps = ((1, case.flaps.len().max(1)), "flaps are counted from the root");
     if let Some(failed) = &flight.failed_flap {
         check.within("flight.failed_flap.at_s", failed.at_s, times, "s", remedy);
-        let remedy = "flaps are counted from the root";
-        let flaps = (1, case.flaps.len().max(1));
-        check.count("flight.failed_flap.flap", failed.flap, flaps, remedy);
+        check.count("flight.failed_flap.flap", failed.flap, flaps.0, flaps.1);
+    }
+    for (i, own) in flight.flap_actuators.iter().enumerate() {
+        let list = format!("flight.flap_actuators[{i}]");
+        check.count(&format!("{list}.flap"), own.flap, flaps.0, flaps.1);
+        let (blade, blades) = (own.blade.unwrap_or(1), (1, case.rotor.blades));
+        check.count(&format!("{list}.blade"), blade, blades, "or leave it out for every blade");
+        let is_same = |before: &FlapActuator| (before.flap, before.blade) == (own.flap, own.blade);
+        if flight.flap_actuators[..i].iter().any(is_same) {
+            check.broken(&list, TWO_ACTUATORS);
+        }
     }
 }
 

@@ -12,7 +12,7 @@ mod study;
 pub use drives::Drives;
 pub use forecast::{Forecast, ForecastLine, ForecastRecord, forecasts};
 pub use robustness::{
-    Disturbance, MarginLine, RobustnessCell, UNBOUNDED, robustness_flights, robustness_maps,
+    Disturbance, MarginLine, RobustnessCell, robustness_flights, robustness_maps,
 };
 pub use root_pitch::{Actuation, MotionHarmonic, RootPitchComparison, compare_root_pitch};
 pub(crate) use run::ideal_control;

@@ -15,6 +15,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
+use rotor_base::{Limit, limit};
 use serde::{Deserialize, Serialize};
 
 /// What is disturbed in one flight.
@@ -55,7 +56,8 @@ pub struct RobustnessCell {
     pub peak_ratio: f64,
 }
 
-/// How wrong T may be at one harmonic.
+/// How wrong T may be at one harmonic: an error of the rotor's own T, on top of what a T that is handed in errs by. A limit that
+/// there is not is the word `unbounded` in results.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct MarginLine {
@@ -64,12 +66,16 @@ pub struct MarginLine {
     /// Largest singular value of the weighted T over the smallest.
     pub condition: f64,
     /// Phase error of all flaps at which the loop diverges, deg; 180 for none.
+    #[serde(serialize_with = "limit::phase", deserialize_with = "limit::read_phase")]
     pub common_phase_deg: f64,
-    /// Gain of the rotor over that of T at which it does; 0 for none.
+    /// Gain of the rotor over that of T at which it does; infinity for none.
+    #[serde(serialize_with = "limit::gain", deserialize_with = "limit::read_gain")]
     pub common_gain: f64,
-    /// Phase error of all flaps from which `J` rises above `J0` on the way, deg.
+    /// Phase error of all flaps from which `J` rises above `J0` on the way, deg; 180 for none.
+    #[serde(serialize_with = "limit::phase", deserialize_with = "limit::read_phase")]
     pub common_overshoot_deg: f64,
     /// The same of one flap alone, flap by flap.
+    #[serde(serialize_with = "limit::phases", deserialize_with = "limit::read_phases")]
     pub flap_overshoot_deg: Vec<f64>,
 }
 
@@ -104,38 +110,16 @@ impl RobustnessCell {
     }
 }
 
-/// What stands in the place of a limit that there is not.
-pub const UNBOUNDED: &str = "unbounded";
-
-/// A number with so many digits, or all of them; a word where there is none.
-fn bounded(value: f64, is_found: bool, digits: Option<usize>) -> String {
-    match (is_found, digits) {
-        (false, _) => UNBOUNDED.to_owned(),
-        (true, Some(digits)) => format!("{value:.digits$}"),
-        (true, None) => value.to_string(),
-    }
-}
-
 impl MarginLine {
-    /// A phase of margins, deg, with so many digits or all; [`UNBOUNDED`] for 180.
-    pub fn phase(deg: f64, digits: Option<usize>) -> String {
-        bounded(deg, deg < 180.0, digits)
-    }
-
-    /// The gain at which the loop diverges likewise.
-    pub fn gain(&self, digits: Option<usize>) -> String {
-        bounded(self.common_gain, self.common_gain > 0.0, digits)
-    }
-
     /// Harmonic, condition, phase and gain of divergence, phases of overshoot, for people.
     pub fn cells(&self) -> [String; 6] {
-        let phase = |deg: &f64| Self::phase(*deg, Some(0));
+        let phase = |deg: &f64| Limit::of_phase(*deg).rounded(0);
         let flaps: Vec<String> = self.flap_overshoot_deg.iter().map(phase).collect();
         [
             format!("{}/rev", self.harmonic),
             format!("{:.1}", self.condition),
             phase(&self.common_phase_deg),
-            self.gain(Some(1)),
+            Limit::of_gain(self.common_gain).rounded(1),
             phase(&self.common_overshoot_deg),
             flaps.join(", "),
         ]
@@ -231,6 +215,8 @@ fn add_noise(loads: &mut [f64], deviation: f64, random: &mut ChaCha8Rng) {
 struct Flights<'a> {
     set: &'a ControlSet<'a>,
     plant: RotorPlant,
+    /// T of the rotor, and that of the controllers: the same, but for one that is handed in.
+    own_t: TMatrix,
     t0: TMatrix,
     settings: RelaxedSettings,
     weights: Vec<f64>,
@@ -264,7 +250,9 @@ impl<'a> Flights<'a> {
     fn new(set: &'a ControlSet<'a>) -> Result<Self, StudyError> {
         let plant = set.plant(ControlActuator::Hysteretic)?;
         let failed = |source| set.failed(ControlActuator::Hysteretic, source);
-        let t0 = set.t_at_rest(&plant).map_err(failed)?;
+        let own_t = set.t_at_rest(&plant).map_err(failed)?;
+        let handed = set.handed_t(ControlActuator::Hysteretic, &plant)?;
+        let t0 = handed.unwrap_or_else(|| own_t.clone());
         let zero = plant.layout().zero();
         let measured = linearised_answer(&plant, &zero, 1.0)
             .map_err(RunError::plant("measured", &zero))
@@ -289,7 +277,7 @@ impl<'a> Flights<'a> {
         };
         let squares = baseline[..HUB_OUTPUTS].iter().map(|z| z * z).sum::<f64>();
         let rms = (squares / HUB_OUTPUTS as f64).sqrt();
-        Ok(Self { set, plant, t0, settings, weights: each_weight, baseline, rms })
+        Ok(Self { set, plant, own_t, t0, settings, weights: each_weight, baseline, rms })
     }
 
     fn cost(&self, outputs: &[f64]) -> f64 {
@@ -390,12 +378,12 @@ impl<'a> Flights<'a> {
     fn margins(&self) -> Result<MarginLine, ControlError> {
         let law = FeedbackLaw::new(&self.t0, &self.settings.load_weights)?;
         let layout = self.plant.layout();
-        let found = law.margins(layout, law.t(), self.settings.step(), &self.baseline)?;
+        let found = law.margins(layout, &self.own_t, self.settings.step(), &self.baseline)?;
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             condition: law.condition(),
             common_phase_deg: found.common_phase_deg,
-            common_gain: if found.common_gain.is_finite() { found.common_gain } else { 0.0 },
+            common_gain: found.common_gain,
             common_overshoot_deg: found.common_overshoot_deg,
             flap_overshoot_deg: found.flap_overshoot_deg,
         })

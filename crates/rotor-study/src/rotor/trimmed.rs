@@ -415,6 +415,20 @@ impl TrimmedRotor {
         self.solver.clone().blade_loads(&self.condition(flap_angles_rad), &self.trim.rotor)
     }
 
+    /// Root loads of a blade unlike the rest, its flaps moving (rad), controls, attitude and inflow as trimmed.
+    ///
+    /// # Errors
+    /// The errors of the response.
+    pub fn unlike_root_loads(
+        &self,
+        unlike: &UnlikeSolver,
+        flap_angles_rad: Vec<HarmonicSeries>,
+    ) -> Result<SixLoads, ResponseError> {
+        let mut condition = self.condition(flap_angles_rad);
+        condition.controls.theta0_rad += unlike.pitch_rad;
+        unlike.solver.clone().blade_loads(&condition, &self.trim.rotor)
+    }
+
     /// Response with moving flaps: pilot controls and attitude as trimmed, inflow settled anew.
     ///
     /// Starts from what the linearised rotor makes of the trimmed orbit and its inflow, where sections may stall from these

@@ -7,11 +7,12 @@ use crate::output::wrap;
 use crate::problem::Problems;
 use rotor_study::case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
-    Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapValues,
-    FlightValues, FreeWakeValues, HorizontalTailValues, InflowValues, LoadWeights, MeasuredFile,
-    MeasuredFiles, MeasuredSection, ModeNumbers, PitchHarmonic, PrescribedCirculation,
-    PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues, Section, StructureValues,
-    ThrustStep, ToleranceValues, UncertainField, Value, Visitor, WindTunnelTrim,
+    Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapActuator,
+    FlapValues, FlightValues, FreeWakeValues, HorizontalTailValues, InflowValues, LoadWeights,
+    MeasuredFile, MeasuredFiles, MeasuredSection, ModeNumbers, PitchHarmonic,
+    PrescribedCirculation, PrescribedTrim, PropulsiveTrim, Range, ResponseValues, RotorValues,
+    Section, StructureValues, ThrustStep, ToleranceValues, UncertainField, Value, Visitor,
+    WindTunnelTrim,
 };
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -60,6 +61,7 @@ fn tables() -> String {
         table::<FlightValues>("flight"),
         table::<ThrustStep>("flight.thrust_step"),
         table::<FailedFlap>("flight.failed_flap"),
+        table::<FlapActuator>("flight.flap_actuators"),
         table::<MeasuredFiles>("measured"),
         table::<MeasuredSection>("measured.airloads"),
         table::<MeasuredFile>("measured.tip, measured.vortex_centres"),

@@ -5,15 +5,15 @@ mod page;
 pub use page::flight_html;
 
 use crate::SimError;
-use crate::actuator::case_actuators;
-use crate::case::{Case, FailedOn, FlightValues, LoadedCase, Notice};
+use crate::actuator::{case_actuators, with_flap_actuators};
+use crate::case::{Case, FlightValues, LoadedCase};
 use crate::output::{Printable, Sheet};
 use crate::problem::{Fault, Problem};
 use crate::progress::Progress;
 use preisach_dyn::ActuatorModel;
 use rotor_flight::{
     DrawnCase, FailureStudy, FlightError, FlownCase, FlyingCase, MarginStudy, controllers_section,
-    dissimilar_note, draws_section, failures_of_case, failures_section, margins_section,
+    draws_section, failures_of_case, failures_section, flight_notes, margins_section,
 };
 use serde::Serialize;
 
@@ -64,6 +64,7 @@ pub struct Beside {
 /// # Errors
 /// A case without a flight; what its actuators are refused for; [`SimError::Flight`].
 pub fn flown(loaded: &LoadedCase, beside: Beside) -> Result<FlightResult, SimError> {
+    let (loaded, own_warnings) = &with_flap_actuators(loaded)?;
     let case = &loaded.case;
     let values = flight_values(loaded)?;
     // what is said of the actuator is of the harmonics flown
@@ -91,11 +92,8 @@ pub fn flown(loaded: &LoadedCase, beside: Beside) -> Result<FlightResult, SimErr
     let scales = case.scales();
     Ok(FlightResult {
         title: case.title.clone(),
-        notes: notes(values, &actuators.data_title)
-            .into_iter()
-            .chain(dissimilar_note(case))
-            .collect(),
-        warnings: [&loaded.warnings[..], &actuators.warnings[..]].concat(),
+        notes: flight_notes(case, values, &actuators.data_title),
+        warnings: [&loaded.warnings[..], &actuators.warnings, own_warnings].concat(),
         harmonics: values.harmonics.clone(),
         blades: case.rotor.blades,
         units: [scales.force_newton(), scales.moment_newton_metre()],
@@ -119,10 +117,11 @@ pub fn leaving<T>(
     loaded: &LoadedCase,
     of: fn(&Case, &ActuatorModel) -> Result<T, FlightError>,
 ) -> Result<(T, Vec<String>), SimError> {
+    let (loaded, own_warnings) = &with_flap_actuators(loaded)?;
     let actuators = case_actuators(loaded)?;
     let model = actuators.real.as_ref().unwrap_or(&actuators.ideal);
     let found = of(&loaded.case, model).map_err(|source| flight_error(loaded, source))?;
-    Ok((found, [&loaded.warnings[..], &actuators.warnings[..]].concat()))
+    Ok((found, [&loaded.warnings[..], &actuators.warnings, own_warnings].concat()))
 }
 
 /// The flight of a case.
@@ -133,41 +132,6 @@ pub(crate) fn flight_values(loaded: &LoadedCase) -> Result<&FlightValues, Proble
     let fault = || Fault::Refused { message: NO_FLIGHT.to_owned() };
     let problem = || Problem::new(loaded.index.place("flight"), fault());
     loaded.case.flight.as_ref().ok_or_else(problem)
-}
-
-/// What truth is and what happens, in sentences.
-fn notes(values: &FlightValues, actuator: &str) -> Vec<String> {
-    let actuator = if actuator.is_empty() { "the ideal linear one" } else { actuator };
-    let mut notes = vec![
-        format!(
-            "Truth: the rotor in trim at {} advance ratios, linear in its flaps, interpolated linearly in between. Every revolution is a steady state.",
-            if values.is_level() { 1 } else { values.knots }
-        ),
-        format!(
-            "Actuators: {actuator}. Each flap is marched through its own hysteresis, all harmonics at once."
-        ),
-        format!(
-            "Speed: advance ratio {} to {} in {} s from {} s on.",
-            values.start_advance_ratio, values.end_advance_ratio, values.ramp_s, values.ramp_at_s
-        ),
-    ];
-    notes.extend(values.thrust_step.map(|step| {
-        format!("Thrust: times {} within {} s from {} s on.", step.ratio, step.length_s, step.at_s)
-    }));
-    notes.extend(values.failed_flap.map(|failed| {
-        let told = if failed.notice == Notice::Told { "told" } else { "not told" };
-        let on = if failed.on == FailedOn::OneBlade { "one blade" } else { "every blade" };
-        let (flap, at_s, stuck_deg) = (failed.flap, failed.at_s, failed.stuck_deg);
-        let kept = failed.kept_percent;
-        let left = if kept > 0.0 { format!(" with {kept} % of its motion") } else { String::new() };
-        format!("Failure: flap {flap} of {on} stuck at {stuck_deg} deg{left} from {at_s} s on; the controller is {told}.")
-    }));
-    let (noise, seed) = (values.noise_percent, values.seed);
-    let told = if values.noise_notice == Notice::Told { "told to" } else { "estimated by" };
-    notes.push(format!(
-        "Noise: {noise} % of the loads at the start in each revolution, seed {seed}; {told} the adaptive controller."
-    ));
-    notes
 }
 
 /// Every cycle of every controller: a row each.

@@ -62,8 +62,18 @@ impl FlightResult {
     /// What blades alike cancel, against time.
     fn off_blade_number(&self) -> Markup {
         html! {
-            (panel("J at 1/rev over J0", "J/J0", self.lines(&|p| p.once_per_rev_ratio, None)))
-            (panel("J at the other harmonics over J0", "J/J0", self.lines(&|p| p.other_ratio, None)))
+            @let once_at_rest = |point: &FlightPoint| point.off_blade_number_at_rest[0];
+            @let others_at_rest = |point: &FlightPoint| point.off_blade_number_at_rest[1];
+            (panel(
+                "J at 1/rev over J0",
+                "J/J0",
+                self.lines(&|p| p.once_per_rev_ratio, Some(&once_at_rest)),
+            ))
+            (panel(
+                "J at the other harmonics over J0",
+                "J/J0",
+                self.lines(&|p| p.other_ratio, Some(&others_at_rest)),
+            ))
         }
     }
 

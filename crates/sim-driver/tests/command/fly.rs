@@ -22,16 +22,59 @@ fn rows(csv: &str) -> Vec<std::collections::BTreeMap<&str, &str>> {
     lines.map(|line| names.iter().copied().zip(line.split(',')).collect()).collect()
 }
 
-/// Blades unlike the rest are not flown as such, and that is said.
+const LEVEL: &str =
+    "duration_s: 4, start_advance_ratio: 0.2, end_advance_ratio: 0.2, harmonics: [2, 3],
+        noise_percent: 0, controllers: [Fixed]";
+
+/// Blades unlike the rest are flown as such: off the blade number, with control and without.
 #[test]
-fn a_flight_of_dissimilar_blades_says_that_it_leaves_them_out() {
-    let place = flying(FLIGHT);
+fn a_flight_of_dissimilar_blades_feels_them() {
+    let place = flying(LEVEL);
     let said = |place: &Place| place.hhc(&["fly", "case.ron"]).done();
-    assert!(!said(&place).contains("dissimilar_blades"));
+    assert!(!said(&place).contains("Blades unlike the rest"));
     let case = place.read("case.ron");
     let unlike = "rotor: (dissimilar_blades: [(blade: 2, mass: 1.02)]),\n    structure:";
     place.write("case.ron", &case.replacen("structure:", unlike, 1));
-    assert!(said(&place).contains("`rotor.dissimilar_blades` is left out"));
+    assert!(said(&place).contains("Blades unlike the rest: 2."));
+    let csv = place.read("out/case/flight.csv");
+    for row in rows(&csv) {
+        for name in ["once_per_rev_over_j0", "others_over_j0_without_control"] {
+            assert!(row[name].parse::<f64>().unwrap() > 1e-4, "{name}: {csv}");
+        }
+    }
+    assert!(place.read("out/case/flight.html").contains("J at 1/rev over J0"));
+}
+
+/// A flap with an actuator file of its own moves by it; files that are missing or do not fit are refused, by `check` too.
+#[test]
+fn a_flap_has_an_actuator_file_of_its_own() {
+    let own = "flap_actuators: [(flap: 2, path: \"outboard.ron\", notice: Untold)]";
+    let place = flying(&format!("{LEVEL}, {own}"));
+    for command in ["fly", "check"] {
+        let parts = ["flight.flap_actuators[0].path", "outboard.ron"];
+        place.hhc(&[command, "case.ron"]).rejected(&parts);
+    }
+    let file = |range: &str, gain: &str| {
+        format!(
+            "(kind: Actuator, title: \"half\", model: (law: Linear(gain_deg_per_volt: {gain}, bias_volt: 65), range_volt: {range}, calibration: (deg_per_um: 0.04, zero_um: 0)))"
+        )
+    };
+    place.write("outboard.ron", &file("(0, 100)", "0.05"));
+    place.hhc(&["fly", "case.ron"]).rejected(&["actuator.range_V", "(0, 100) V"]);
+    place.write("outboard.ron", &file("(-20, 150)", "0.05"));
+    place.hhc(&["check", "case.ron"]).done();
+    let said = place.hhc(&["fly", "case.ron"]).done();
+    for part in ["Flap 2 of every blade: actuator outboard.ron", "does not know it"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let csv = place.read("out/case/flight.csv");
+    let last = rows(&csv).pop().unwrap();
+    let number = |name: &str| last[name].parse::<f64>().unwrap();
+    let gain = |flap: usize| {
+        number(&format!("flap{flap}_3_per_rev_deg")) / number(&format!("flap{flap}_3_per_rev_V"))
+    };
+    println!("{} and {} deg/V", gain(1), gain(2));
+    assert!((gain(2) - 0.05).abs() < 1e-3 && (gain(1) - 0.05).abs() > 0.02, "{csv}");
 }
 
 #[test]
@@ -204,6 +247,19 @@ fn flights_that_cannot_be_are_refused() {
         ("noise_notice: Loud", ["flight.noise_notice", "Loud"]),
         ("failed_flap: (kept_percent: 101)", ["flight.failed_flap.kept_percent", "0 to 100 %"]),
         ("failed_flap: (on: Two)", ["flight.failed_flap.on", "Two"]),
+        (
+            "flap_actuators: [(flap: 3, path: \"a.ron\")]",
+            ["flight.flap_actuators[0].flap", "expected 1 to 2"],
+        ),
+        (
+            "flap_actuators: [(blade: 9, path: \"a.ron\")]",
+            ["flight.flap_actuators[0].blade", "expected 1 to 4"],
+        ),
+        ("flap_actuators: [(flap: 1)]", ["flight.flap_actuators[0].path", "is empty"]),
+        (
+            "flap_actuators: [(path: \"a.ron\"), (path: \"b.ron\")]",
+            ["flight.flap_actuators[1]", "give each once"],
+        ),
     ] {
         flying(flight).hhc(&["fly", "case.ron"]).rejected(&parts);
     }
