@@ -273,8 +273,11 @@ pub(super) fn choose(
         let alike = |c: &Channel| if channel.is_time() { c.is_time() } else { c.name == *name };
         let count = times.iter().chain(&data).filter(|(_, c)| alike(c)).count();
         if count > 1 {
+            let number = |taken: &Taken| format!("{}=#{}", taken.channel.label(), taken.source + 1);
+            let all: Vec<String> = choice.taken().map(number).collect();
             return Err(Fault::Other(format!(
-                "{count} columns are called `{name}`: say which one is meant by its number, --columns time_s=#1,{name}_UNIT=#2,... (the others are then left out), or rename them in the header"
+                "{count} columns are called `{name}`: say which one is meant by its number, --columns {} (the others are then left out), or rename them in the header",
+                all.join(",")
             )));
         }
     }

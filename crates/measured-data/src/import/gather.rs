@@ -22,6 +22,9 @@ pub(super) struct Reduction {
 
 /// A step of the time that is a gap, in usual steps.
 const GAP: f64 = 10.0;
+const SHORT_GAP: f64 = 1.5;
+/// Equal steps after which a step of a few of them is one of lost rows.
+const SURELY_EVEN: usize = 30;
 /// Fewest samples of a part of a source.
 const LEAST_PART: usize = 16;
 /// Most samples without a number in a row that are filled by a straight line.
@@ -170,7 +173,9 @@ impl Gather {
     fn part(&mut self, time_s: f64) {
         let step = time_s - self.time.last_s;
         let usual = (self.time.last_s - self.time.first_s) / (self.count.max(2) - 1) as f64;
-        let breaks = self.count > 0 && (step < 0.0 || self.count > 1 && step > GAP * usual);
+        // among equal steps a longer one is a gap already
+        let most = if self.count > 2 && self.time.steps.len() == 1 { SHORT_GAP } else { GAP };
+        let breaks = self.count > 0 && (step < 0.0 || self.count > 1 && step > most * usual);
         if self.reduction.split && breaks {
             self.begin_anew();
         }
@@ -250,7 +255,8 @@ impl Gather {
             self.gaps.open += 1;
             return;
         }
-        let open = std::mem::take(&mut self.gaps.open);
+        let lost = self.rows_lost(row[0]);
+        let open = std::mem::take(&mut self.gaps.open) + lost;
         let last = std::mem::take(&mut self.gaps.last);
         if last.is_empty() {
             self.gaps.left_out += open;
@@ -273,6 +279,21 @@ impl Gather {
         }
         self.push(row.iter().copied(), line, problems);
         self.gaps.last = row;
+    }
+
+    /// Rows that a source with a time and equal steps leaves out before a time.
+    fn rows_lost(&self, time_s: f64) -> usize {
+        let is_timed = self.reduction.sampling_hz.is_none();
+        let ([(step_s, _)], true, 0) = (&self.time.steps[..], is_timed, self.gaps.open) else {
+            return 0;
+        };
+        let steps = (time_s - self.time.last_s) / step_s;
+        let is_whole = (steps - steps.round()).abs() <= 0.02 * steps;
+        let is_short = (1.5..MOST_FILLED as f64 + 1.5).contains(&steps);
+        if self.count < SURELY_EVEN || self.time.hole || !is_whole || !is_short {
+            return 0;
+        }
+        whole(steps.round() - 1.0)
     }
 
     /// Ends a record and begins the next of the same source.
@@ -507,7 +528,14 @@ impl Gather {
         let is_clock = short.0 >= 0.0
             && (multiple - multiple.round()).abs() < 0.01
             && rarer >= least * (short.1 + long.1) as f64;
-        let even = Even::through(&self.columns[0], self.block);
+        let mut even = Even::through(&self.columns[0], self.block);
+        // a clock that ticks every so many samples; over the record none can tell the step from that
+        let tick_s = grain_s / (grain_s / even.step_s).round();
+        let samples = self.count as f64;
+        if short.0 <= 0.0 && (tick_s - even.step_s).abs() * samples <= 0.5 * grain_s {
+            even.first_s -= 0.5 * (tick_s - even.step_s) * samples;
+            even.step_s = tick_s;
+        }
         let is_near = |(i, time): (usize, &f64)| {
             let line = even.first_s + even.step_s * self.block as f64 * i as f64;
             (time - line).abs() <= 1.01 * grain_s

@@ -197,7 +197,7 @@ pub enum Fault {
     },
     /// A field is no number.
     #[error(
-        "`{text}` is not a number; expected a decimal number such as -1.25e-3{}",
+        "`{text}` is not a number; expected a decimal number such as -1.25e-3{}; write plain numbers into the cells",
         if .text.contains(',') { ", with a decimal point: replace the decimal commas" } else { "" }
     )]
     NotANumber {

@@ -72,6 +72,10 @@ impl<R: BufRead> Lines<R> {
         if NO_NUMBER.iter().any(|word| line.starts_with(word)) {
             line.insert(0, b' ');
         }
+        // the end that DOS writes, and the zeros of a block that was not filled
+        while line.last().is_some_and(|byte| matches!(byte, 0 | 0x1a)) {
+            line.pop();
+        }
         if let (b'\r', Some(last)) = (self.end, line.last_mut())
             && *last == b'\r'
         {

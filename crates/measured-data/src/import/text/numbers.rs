@@ -1,9 +1,13 @@
 //! The number of a cell: decimal points or commas, thousands separators, missing values, times of day.
 
 /// Words that instruments and spreadsheets write where there is no number, in lower case.
-const MISSING: [&str; 36] = [
+const MISSING: [&str; 40] = [
     "nan",
     "-nan",
+    "nan(ind)",
+    "-nan(ind)",
+    "nan(snan)",
+    "-nan(snan)",
     "na",
     "n/a",
     "#n/a",

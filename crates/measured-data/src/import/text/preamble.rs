@@ -104,6 +104,12 @@ impl Preamble {
                 found.take(key, &[value.trim().to_owned()], decimal);
                 continue;
             }
+            if let Some((key, value)) = row.text.split_once(':').filter(|_| row.is_comment)
+                && is_key(key)
+            {
+                found.take(key, &[value.trim().to_owned()], decimal);
+                continue;
+            }
             for (i, cell) in cells.iter().enumerate() {
                 match cell.split_once(['=', ':']) {
                     Some((key, value)) if !value.trim().is_empty() => {
