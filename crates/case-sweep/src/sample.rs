@@ -1,9 +1,9 @@
 //! Values of the axes of every case.
 
 use crate::file::{Axis, AxisValues, MOST_CASES, Sampling, SweepFile};
+use chacha20::ChaCha8Rng;
 use measured_data::problem::{Fault, Place, Problem};
 use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// A value as RON text, and where the sweep gives it.
 pub(crate) type Value = (String, Place);

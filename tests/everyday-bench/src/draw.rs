@@ -1,11 +1,11 @@
 //! Random numbers that are a function of a purpose and a list of keys alone.
 
+use chacha20::ChaCha12Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha12Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// A stream of random numbers.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) struct Draw(ChaCha12Rng);
 
 impl Draw {

@@ -2,8 +2,8 @@
 
 use crate::draw::Parameters;
 use crate::error::RotorTruthError;
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

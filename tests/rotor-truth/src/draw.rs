@@ -1,8 +1,8 @@
 //! What the seed draws: streams, sizes of effects, and how they are told.
 
 use crate::error::RotorTruthError;
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use serde_json::{Map, Value};
 

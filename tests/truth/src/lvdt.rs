@@ -7,8 +7,8 @@
 //! It reads at the rate of the record, after the chain. Not modelled: the bandwidth of the
 //! demodulator (kHz, far above the tests) and hum.
 
+use chacha20::ChaCha8Rng;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::error::{TruthError, require};
@@ -32,7 +32,7 @@ impl LvdtParameters {
 }
 
 /// The sensor with its own stream of noise.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Lvdt {
     parameters: LvdtParameters,
     noise: ChaCha8Rng,

@@ -1,7 +1,7 @@
 //! Bytes, words and numbers: changes that know nothing of the form of an input.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 /// What an input is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

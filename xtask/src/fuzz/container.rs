@@ -2,11 +2,11 @@
 
 use std::io::{Read, Write};
 
+use chacha20::ChaCha8Rng;
 use flate2::Crc;
 use flate2::read::{DeflateDecoder, GzDecoder, ZlibDecoder};
 use flate2::write::{GzEncoder, ZlibEncoder};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 use super::bytes::{Form, number, of_bytes};
 use super::parts;

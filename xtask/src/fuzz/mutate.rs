@@ -1,7 +1,7 @@
 //! How an input is changed: by the parts of its form, and as the bytes it is.
 
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 
 use super::bytes::{Form, of_bytes};
 use super::{container, parts};

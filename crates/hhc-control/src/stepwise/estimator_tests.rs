@@ -2,8 +2,8 @@
 
 use super::*;
 use Observed::{AsExpected, BaselineJump, SensitivityJump};
+use chacha20::ChaCha8Rng;
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 const LOADS: usize = 6;

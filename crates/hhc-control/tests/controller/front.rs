@@ -1,12 +1,12 @@
 //! The front of two costs against closed forms, projected gradients and what chance finds.
 
 use crate::plants::{Problem, as_t};
+use chacha20::ChaCha8Rng;
 use hhc_control::{
     ControlLayout, ControlLimits, FeedbackLaw, FrontPoint, LoadWeights, SecondCost, VoltageRange,
 };
 use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// Two flaps at 3/rev, twelve loads.
 fn problem() -> Problem {

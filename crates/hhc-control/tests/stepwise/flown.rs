@@ -1,12 +1,12 @@
 //! Cycles under noise, with jumps and losses.
 
 use crate::rotor::SPEEDS;
+use chacha20::ChaCha8Rng;
 use hhc_control::{
     ControlLayout, CycleController, EstimatorSettings, Observed, RelaxedController,
     RelaxedSettings, TMatrix,
 };
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// Draws of the noise. No setting was chosen on these.

@@ -2,10 +2,10 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use crate::common::Wavy;
+use chacha20::ChaCha8Rng;
 use preisach_dyn::identify::{BenchRecord, DensitySpread, NoiseSource, Settings, identify};
 use preisach_dyn::{ActuatorLaw, HysteresisLaw, StartState};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 
 const LEVELS: usize = 6;

@@ -295,7 +295,7 @@ fn a_million_random_steps(
     model: &DynamicPreisach,
     mut each: impl FnMut([f64; 3], f64, f64, OutputRate),
 ) -> StepCounts {
-    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(20_260_117);
+    let mut random = chacha20::ChaCha8Rng::seed_from_u64(20_260_117);
     let (mut memory, _) = model.start(65.0, StartState::Rest);
     let mut u = 65.0_f64;
     for _ in 0..1_000_000 {

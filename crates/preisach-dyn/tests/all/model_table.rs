@@ -3,6 +3,7 @@
 
 use crate::common;
 
+use chacha20::ChaCha8Rng;
 use common::Wavy;
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, Finding, Order, RecordUse, Settings, StaticAccumulator,
@@ -13,7 +14,6 @@ use preisach_dyn::{
     PreisachError, Relaxation, RelaxationElement, StaticPreisach, VoltageRange,
 };
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::f64::consts::TAU;
 

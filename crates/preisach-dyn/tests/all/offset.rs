@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
 use crate::common::Wavy;
+use chacha20::ChaCha8Rng;
 use preisach_dyn::forc::{self, ForcCurve, ForcData, ForcSettings};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, FlapZero, Settings, StaticAccumulator, compare_models,
@@ -9,7 +10,6 @@ use preisach_dyn::identify::{
 };
 use preisach_dyn::{HysteresisLaw, PreisachGrid, StartState, StaticPreisach, VoltageRange};
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::f64::consts::TAU;
 

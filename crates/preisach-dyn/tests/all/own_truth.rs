@@ -1,6 +1,7 @@
 //! Identification against truths made here: one inside the model class, one outside it.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
+use chacha20::ChaCha8Rng;
 use preisach_dyn::identify::{
     BenchRecord, Identification, RecordReport, RecordUse, Settings, Waveform, identify,
 };
@@ -9,7 +10,6 @@ use preisach_dyn::{
     PreisachGrid, RateForm, StartState, TimeOrder, VoltageRange,
 };
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::f64::consts::TAU;
 

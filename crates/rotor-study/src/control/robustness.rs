@@ -7,12 +7,12 @@ use crate::error::StudyError;
 use crate::flaps::PlantError;
 use crate::plant::{HUB_OUTPUTS, RotorPlant, linearised_answer, output_weights};
 use crate::rotor::TrimmedRotor;
+use chacha20::ChaCha8Rng;
 use hhc_control::{
     ControlError, Cost, CycleController, EstimatorSettings, FeedbackLaw, Plant, RelaxedController,
     RelaxedSettings, RunError, TMatrix,
 };
 use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use rotor_base::{Limit, limit};

@@ -2,8 +2,8 @@
 
 use super::beam::{Along, Beam};
 use crate::draw::{log_within, normal, rounded};
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -2,8 +2,8 @@
 
 use crate::draw::{log_within, rounded};
 use crate::section::theory::Motion;
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::PI;
 
 /// Chord, m.

@@ -7,7 +7,7 @@ use super::theory::Motion;
 use crate::asked::{Answer, Asked, Made, chosen};
 use crate::draw::{Draw, checked_size, normal, stream};
 use crate::error::RotorTruthError;
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::fmt::Write;

@@ -8,7 +8,7 @@ use crate::draw::{Draw, Parameters, checked_size, told};
 use crate::error::RotorTruthError;
 use crate::physics::blade::Stall;
 use crate::physics::inflow::InflowKind;
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use serde_json::json;
 
 /// `m0 Omega^2 R^3` at nominal speed, N m.

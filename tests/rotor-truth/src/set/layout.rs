@@ -4,8 +4,8 @@ use super::drive::{GAIN_DEG_PER_VOLT, Voltage};
 use super::fly::{Condition, Group};
 use super::machine::NOMINAL_RPM;
 use crate::physics::fourier::Pair;
+use chacha20::ChaCha8Rng;
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// What is driven over the set.

@@ -2,7 +2,7 @@
 
 use super::fly::{Group, Readings};
 use crate::physics::fourier::Pair;
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;

@@ -1,7 +1,7 @@
 //! Random numbers that are a function of a list of keys alone.
 
+use chacha20::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 /// What a stream of random numbers is for: the first of its keys.
@@ -18,7 +18,7 @@ pub(super) enum Purpose {
 }
 
 /// A stream of random numbers.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(super) struct Draw(ChaCha8Rng);
 
 impl Draw {

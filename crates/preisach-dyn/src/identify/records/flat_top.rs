@@ -187,8 +187,8 @@ mod tests {
         PrandtlStop, PreisachGrid, Relaxation, RelaxationElement, StaticPreisach, StopParameters,
         VoltageRange, WeightedStop,
     };
+    use chacha20::ChaCha8Rng;
     use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, Normal};
     use std::f64::consts::TAU;
 

@@ -116,8 +116,8 @@ pub(crate) fn fit(
 mod tests {
     use super::*;
     use approx::assert_abs_diff_eq;
+    use chacha20::ChaCha8Rng;
     use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, Normal};
 
     /// 2 + 3 sin + 0.5 cos 3 at 66.67 samples per cycle.

@@ -150,8 +150,8 @@ fn size(values: &[f64], first: usize, count: usize) -> Option<f64> {
 mod tests {
     use super::*;
     use crate::{ActuatorModel, AmplifierStage, Lag, LinkageStage, Resonance, VoltageRange};
+    use chacha20::ChaCha8Rng;
     use rand::{Rng, RngExt, SeedableRng};
-    use rand_chacha::ChaCha8Rng;
     use rand_distr::{Distribution, Normal};
     use std::f64::consts::TAU;
 
