@@ -77,7 +77,9 @@ pub use law::{
 };
 pub use layout::{ControlLayout, lag_deg};
 pub use limits::{ControlLimits, FlapCircle, PowerLimit, VoltageRange};
-pub use plant::{LinearPlant, Measurement, Plant};
+pub use plant::{
+    HUB_OUTPUTS, LinearPlant, Measurement, Plant, PowerOutputs, hub_outputs, output_weights,
+};
 pub use record::{AllowedIncrease, ControlRun, ControlStep, LoopEnd, StopReason};
 pub use sensitivity::{AdaptiveSettings, Controller};
 pub use settings::{Acceptance, FeedbackSettings};

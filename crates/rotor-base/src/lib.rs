@@ -19,6 +19,7 @@ mod quadrature;
 mod record_use;
 mod rests;
 mod scales;
+pub mod series;
 mod stats;
 
 pub use error::BaseError;

@@ -28,7 +28,6 @@ mod measured;
 mod plant;
 mod rotor;
 mod sensitivity;
-mod series;
 mod wake;
 
 pub use blade::*;
@@ -40,11 +39,11 @@ pub use loads::{HubLoads, Setting, is_still, loads_cost};
 pub use measured::*;
 pub use plant::*;
 pub use rotor::*;
+pub use rotor_base::series::{scaled, weighted};
 pub use sensitivity::{
     Assumptions, Sensitivity, SensitivityLine, SensitivityRecord, most_moved, sensitivities,
     sensitivity_lines,
 };
-pub use series::{scaled, weighted};
 pub use wake::{FoundWake, PassageLine, WakeResult, WakeUpdateLine, wake_of_case};
 
 /// Version of the model, part of the key of every stored result: equal versions, cases and inputs give equal numbers.

@@ -1,8 +1,10 @@
 //! What the controller sees of the rotor and its actuators.
 
 mod linear;
+mod outputs;
 
 pub use linear::LinearPlant;
+pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
 
 use crate::{ControlLayout, ControlLimits, TMatrix};
 use rotor_base::Harmonic;

@@ -7,10 +7,10 @@ use crate::error::StudyError;
 use crate::flaps::{FlapDrive, FlapMotion, PlantError};
 use crate::loads::loads_cost;
 use crate::plant::{LinearisedPlant, PlantState, RotorPlant};
-use crate::series::{scaled, times};
 use hhc_control::{Controller, Plant, RunError};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{scaled, times};
 
 /// A wanted motion of every flap, deg, and the rotor with what the inverse makes of it.
 type Made = (Vec<HarmonicSeries>, PlantState);

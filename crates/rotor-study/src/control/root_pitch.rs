@@ -8,11 +8,11 @@ use crate::flaps::{HingePower, PlantError};
 use crate::loads::HubLoads;
 use crate::plant::{RootPitchPlant, RotorPlant, angles_rad};
 use crate::rotor::TrimmedRotor;
-use crate::series::scaled;
 use hhc_control::{
     ControlLayout, ControlRun, Controller, FeedbackController, Plant, RunError, TMatrix,
 };
 use rayon::prelude::*;
+use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{HingeMoment, RotorSolution, StationLoads};
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,7 @@
 
 use crate::costs::electrical::{ElectricalPower, electrical_power};
 use crate::flaps::HingePower;
-use crate::series::scaled;
+use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales, uniform_azimuths_rad};
 use rotor_response::HingeMoment;
 use serde::Serialize;

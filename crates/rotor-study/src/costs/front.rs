@@ -14,11 +14,11 @@ use crate::flaps::PlantError;
 use crate::loads::{is_still, loads_cost};
 use crate::plant::{HUB_OUTPUTS, RotorPlant, output_weights, watt_per_deg2};
 use crate::rotor::{HARMONICS, TrimmedRotor};
-use crate::series::{added, coefficients, scaled};
 use hhc_control::{
     ControlError, ControlLimits, FeedbackLaw, FrontPoint, Plant, RunError, SecondCost, TMatrix,
 };
 use rayon::prelude::*;
+use rotor_base::series::{added, coefficients, scaled};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 use serde::{Deserialize, Serialize};
 

@@ -15,8 +15,8 @@
 
 use crate::flaps::error::PlantError;
 use crate::flaps::motion::FlapMotion;
-use crate::series::{coefficients, series};
 use nalgebra::{DMatrix, DVector, Dyn, LU};
+use rotor_base::series::{coefficients, series};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::Anderson;
 

@@ -4,13 +4,13 @@ use crate::flaps::bias::Bias;
 use crate::flaps::error::PlantError;
 use crate::flaps::full_scale::FullScale;
 use crate::flaps::motion::FlapMotion;
-use crate::series::{only, place, scaled, times};
 use hhc_control::{BiasSolver, ControlError, RunError};
 use preisach_dyn::{
     ActuatorModel, InverseSettings, LinkageStage, PeriodicResponse, PeriodicSettings,
     PreisachError, VoltageRange,
 };
 use rayon::prelude::*;
+use rotor_base::series::{only, place, scaled, times};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! What a flap asks of its actuator: hinge moment and power.
 
-use crate::series::scaled;
+use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales, uniform_azimuths_rad};
 use rotor_response::HingeMoment;
 

@@ -1,8 +1,8 @@
 //! The motion of one flap.
 
-use crate::series::{scaled, weighted};
 use preisach_dyn::PeriodicResponse;
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{scaled, weighted};
 
 /// Voltage and angle of one flap over a revolution, against the azimuth of its blade.
 #[derive(Debug, Clone, PartialEq)]

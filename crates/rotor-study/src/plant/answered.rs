@@ -2,8 +2,8 @@
 
 use crate::flaps::PlantError;
 use crate::plant::rotor_plant::RotorPlant;
-use crate::series::scaled;
 use hhc_control::{ControlLayout, ControlLimits, Measurement, Plant, TMatrix};
+use rotor_base::series::scaled;
 
 /// The rotor linearised about its trim with the actuators as they are, which alone are evaluated: what can be
 /// worked out beforehand. Layout, strokes and limits are those of the plant.

@@ -2,7 +2,6 @@
 
 mod answered;
 mod memo;
-mod outputs;
 mod pair_power;
 mod power;
 mod root_pitch;
@@ -10,7 +9,7 @@ mod rotor_plant;
 mod tangent;
 
 pub(crate) use answered::{LinearisedPlant, linearised_answer};
-pub use outputs::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
+pub use hhc_control::{HUB_OUTPUTS, PowerOutputs, hub_outputs, output_weights};
 pub use pair_power::given_watt_per_rad2;
 pub(crate) use pair_power::watt_per_deg2;
 pub use root_pitch::RootPitchPlant;

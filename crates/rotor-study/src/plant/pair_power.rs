@@ -13,8 +13,8 @@
 //! Source: this project; the integral is elementary.
 
 use crate::rotor::FlapAuthority;
-use crate::series::{only, place, times};
 use hhc_control::ControlLayout;
+use rotor_base::series::{only, place, times};
 use rotor_base::{Harmonic, RotorScales};
 use std::f64::consts::{FRAC_PI_2, PI};
 

@@ -1,7 +1,7 @@
 //! The power of the actuators in the plant: its limit and its weight.
 
 use crate::flaps::{FlapMotion, FullScale, PlantError};
-use crate::plant::outputs::PowerOutputs;
+use crate::plant::PowerOutputs;
 use crate::plant::pair_power::watt_per_deg2;
 use crate::plant::rotor_plant::{PlantPower, RotorPlant};
 use hhc_control::PowerLimit;

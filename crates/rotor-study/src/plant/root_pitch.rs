@@ -2,10 +2,10 @@
 
 use crate::flaps::PlantError;
 use crate::rotor::{RootPitchEffect, TrimmedRotor};
-use crate::series::scaled;
 use hhc_control::{ControlError, ControlLayout, Measurement, Plant, RunError, TMatrix};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_base::series::scaled;
 use rotor_response::{RotorSolution, StateChange};
 
 /// The plant: degrees of pitch at the root of every blade in, hub loads out.

@@ -1,7 +1,7 @@
 //! What every harmonic of every flap does to the hub, from the linearised rotor.
 
-use crate::series::{added, coefficients, only};
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{added, coefficients, only};
 use rotor_response::{
     Condition, FlapDirection, HubSensitivity, InflowState, ResponseError, RotorSolution,
     RotorSolver, StateChange,

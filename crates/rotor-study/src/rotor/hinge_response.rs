@@ -3,10 +3,10 @@
 use crate::flaps::{HingeCoupling, HingePower};
 use crate::rotor::once::found;
 use crate::rotor::trimmed::TrimmedRotor;
-use crate::series::{added, coefficients, only, scaled, weighted};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{added, coefficients, only, scaled, weighted};
 use rotor_response::{HingeMoment, ResponseError, RotorSolution};
 
 /// Step of the differences in a harmonic of a flap angle, rad: the response is nearly linear in it.

@@ -2,9 +2,9 @@
 
 use crate::case::Case;
 use crate::rotor::authority::FlapAuthority;
-use crate::series::{only, place};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{only, place};
 use rotor_response::{Condition, FlapDirection, ResponseError, RotorSolver};
 use std::collections::BTreeSet;
 use trim::{WakeDifference, WakeTrim, WakeTrimSettings, linearised_in_wake, wake_difference};

@@ -1,8 +1,8 @@
 //! What small flap motions do to the moments at the root of the blade.
 
 use crate::rotor::trimmed::TrimmedRotor;
-use crate::series::{scaled, weighted};
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{scaled, weighted};
 use rotor_response::{InflowState, ResponseError};
 
 /// Flap motion of the central difference, deg: the loads of a response that the linearised rotor gives are smooth in it.

@@ -1,8 +1,8 @@
 //! Pitch at the root of the blades beside the controls of the trim.
 
 use crate::rotor::TrimmedRotor;
-use crate::series::{added, only, place};
 use rotor_base::HarmonicSeries;
+use rotor_base::series::{added, only, place};
 use rotor_response::{
     Disturbance, ResponseError, RotorSolution, RotorSolver, StateChange, StationLoads,
 };

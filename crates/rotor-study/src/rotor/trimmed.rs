@@ -7,8 +7,8 @@ use crate::rotor::inflow::{SettledTrim, refuse_prescribed_circulation, settled_t
 use crate::rotor::once::{Once, found};
 use crate::rotor::reconverged::{ReconvergedAuthority, Reconverging};
 use crate::rotor::resonance::{dissimilar_rotors, refuse_resonance_of, trim_error};
-use crate::series::scaled;
 use nalgebra::DMatrix;
+use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{
     BladeStateSpace, Condition, FlapDirection, InflowState, OtherBlade, ResponseError,

@@ -5,7 +5,7 @@
 //! ```
 //! The weight of the power is in its gains `g`, so its weight in the cost is 1.
 
-use hhc_control::LoadWeights;
+use crate::LoadWeights;
 
 /// Hub loads in a measurement: cosine and sine of six.
 pub const HUB_OUTPUTS: usize = 12;

@@ -1,9 +1,9 @@
 //! Sums and multiples of series over a revolution.
 
-use rotor_base::{Harmonic, HarmonicSeries};
+use crate::{Harmonic, HarmonicSeries};
 
 /// A harmonic times a factor.
-pub(crate) fn times(harmonic: Harmonic, factor: f64) -> Harmonic {
+pub fn times(harmonic: Harmonic, factor: f64) -> Harmonic {
     Harmonic { cosine: factor * harmonic.cosine, sine: factor * harmonic.sine }
 }
 
@@ -19,7 +19,7 @@ pub fn weighted(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> Harmonic
 }
 
 /// `a + factor b`.
-pub(crate) fn added(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
+pub fn added(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> HarmonicSeries {
     let mut out = HarmonicSeries::zero(a.harmonics.len().max(b.harmonics.len()));
     out.mean = a.mean + factor * b.mean;
     for n in 1..=out.harmonics.len() {
@@ -31,7 +31,7 @@ pub(crate) fn added(a: &HarmonicSeries, b: &HarmonicSeries, factor: f64) -> Harm
 }
 
 /// Coefficients of a series to `count` harmonics: mean, then cosine and sine of each.
-pub(crate) fn coefficients(series: &HarmonicSeries, count: usize) -> impl Iterator<Item = f64> {
+pub fn coefficients(series: &HarmonicSeries, count: usize) -> impl Iterator<Item = f64> {
     let harmonics = (1..=count).flat_map(|n| {
         let h = series.harmonic(n);
         [h.cosine, h.sine]
@@ -39,21 +39,24 @@ pub(crate) fn coefficients(series: &HarmonicSeries, count: usize) -> impl Iterat
     std::iter::once(series.mean).chain(harmonics)
 }
 
-/// The series of these coefficients.
-pub(crate) fn series(coefficients: &[f64]) -> HarmonicSeries {
+/// The series of these coefficients: the mean, then cosine and sine of each harmonic.
+///
+/// # Panics
+/// Without a mean.
+pub fn series(coefficients: &[f64]) -> HarmonicSeries {
     let pairs = coefficients[1..].chunks_exact(2);
     let harmonics = pairs.map(|pair| Harmonic { cosine: pair[0], sine: pair[1] }).collect();
     HarmonicSeries { mean: coefficients[0], harmonics }
 }
 
 /// The series of which only the coefficient `k` is not zero.
-pub(crate) fn only(k: usize, coefficient: f64) -> HarmonicSeries {
+pub fn only(k: usize, coefficient: f64) -> HarmonicSeries {
     let mut coefficients = vec![0.0; 2 * k.div_ceil(2) + 1];
     coefficients[k] = coefficient;
     series(&coefficients)
 }
 
-/// Place of the cosine, or the sine, of a harmonic among the coefficients of a series.
-pub(crate) fn place(harmonic: usize, sine: bool) -> usize {
+/// Place of the cosine, or the sine, of a harmonic (from 1) among the coefficients of a series.
+pub fn place(harmonic: usize, sine: bool) -> usize {
     2 * harmonic - usize::from(!sine)
 }
