@@ -488,6 +488,7 @@ mod tests {
             planform: crate::Planform::default(),
             lock_number: 5.2,
             drag_coefficient: 0.01,
+            camber: crate::Camber::default(),
             root_cutout: 0.2,
             modal_damping: 0.005,
             lag_damper: 0.0,
