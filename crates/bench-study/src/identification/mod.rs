@@ -1,9 +1,11 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 mod choice;
+mod physical;
 mod summary;
 
 pub use choice::{ModelChoice, Pick, PickReason};
+pub use physical::PhysicalParameter;
 pub use summary::fit_table;
 pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
 pub(crate) use summary::{LEAST_SHARE, fits, section};
