@@ -1,9 +1,11 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 mod choice;
+mod physical;
 mod summary;
 
 pub use choice::{ModelChoice, Pick, PickReason};
+pub use physical::PhysicalParameter;
 pub use summary::fit_table;
 pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
 pub(crate) use summary::{LEAST_SHARE, fits, section};
@@ -195,6 +197,9 @@ pub fn identify_loops(
 
 /// The runs as an identification sees them, with a gain from their outputs.
 pub fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
+    // a folder of measured runs alone has no others to train by
+    let is_bare =
+        runs.iter().all(|run| run.entry.role == RunRole::Measured && run.entry.use_as.is_none());
     let record = |run: &Run| {
         // a window trains and judges alike; without one all of the run does
         let window = run.entry.window_s.map(|_| run.window());
@@ -203,7 +208,7 @@ pub fn records(runs: &[Run], gain: f64) -> Vec<BenchRecord> {
             time_step_s: run.table.time_step_s,
             voltage_volt: run.table.input.clone(),
             output_deg: run.table.output.iter().map(|output| gain * output).collect(),
-            record_use: record_use(run),
+            record_use: if is_bare { None } else { record_use(run) },
             windows: RecordWindows { train: window.clone(), judge: window },
             ..BenchRecord::default()
         }

@@ -1,8 +1,10 @@
 //! What `hhc identify` prints.
 
+use super::physical::{PhysicalParameter, physical};
 use super::{BenchIdentification, PickReason, subject};
 use crate::stored::{GainRule, StoredChannels, StoredFit};
 use measured_data::significant;
+use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{
     Channel, DensitySpread, Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison,
     NoiseSource, RecordUse, Refinement, Settings, Severity, Subject,
@@ -34,6 +36,8 @@ impl BenchIdentification {
             picked_by: self.pick.reason,
             refinement: refined.then_some(self.identification.refinement),
             parameters: self.pick.parameters.clone(),
+            physical: physical(&self.pick.parameters, &self.model, subject.units()),
+            actuator: self.model.clone(),
             runs: self.fits.clone(),
             models: self.comparison.as_ref().map_or_else(Vec::new, |t| model_lines(t, subject)),
             findings: self.findings(),
@@ -198,6 +202,10 @@ pub struct IdentifyResult {
     /// Parameters found by output error, as the fit holds them; a deviation is null in JSON if the
     /// records do not determine the parameter.
     pub parameters: Vec<Estimate>,
+    /// The same in physical terms, with 95 % intervals.
+    pub physical: Vec<PhysicalParameter>,
+    /// The model itself, as the actuator file holds it.
+    pub actuator: ActuatorModel,
     /// Fit of every run.
     pub runs: Vec<StoredFit>,
     /// All families of models on the same split; empty if they were not compared.
@@ -443,7 +451,7 @@ impl IdentifyResult {
 
     /// The parameters found by output error.
     pub(crate) fn parameters_found(&self) -> Section {
-        parameter_table(&self.parameters)
+        parameter_table(&self.physical)
     }
 
     /// Why the model is the one judged, in words.
@@ -471,17 +479,16 @@ fn as_text(own: &Section) -> String {
     table(&header, own.rows.iter().cloned())
 }
 
-fn parameter_table(parameters: &[Estimate]) -> Section {
+fn parameter_table(parameters: &[PhysicalParameter]) -> Section {
     section(
-        &["parameter", "value", "std deviation"],
-        parameters.iter().map(|p| {
-            let deviation = if p.std_deviation.is_finite() {
-                let tied = if p.is_tied() { ", tied to its usual value" } else { "" };
-                format!("{}{tied}", significant(p.std_deviation, 2))
-            } else {
-                "not determined".to_owned()
-            };
-            vec![p.name.clone(), significant(p.value, 4).to_string(), deviation]
+        &["parameter", "value", "95 % interval", ""],
+        parameters.iter().map(|own| {
+            let value = format!("{} {}", significant(own.value, 4), own.unit);
+            let interval = own.interval.map_or("not determined".to_owned(), |[low, high]| {
+                format!("{} to {}", significant(low, 4), significant(high, 4))
+            });
+            let remark = own.remark.unwrap_or_default().to_owned();
+            vec![own.name.clone(), value.trim_end().to_owned(), interval, remark]
         }),
     )
 }

@@ -7,6 +7,7 @@ mod dynamics;
 mod forc;
 mod hysteresis;
 mod identifiability;
+mod intervals;
 mod inverse;
 mod laws;
 mod model_table;

@@ -132,3 +132,32 @@ fn reversal_curves_do_not_depend_on_the_offset() {
     let (near, away) = (worst(0.0), worst(AWAY_UM));
     assert!(near < 2.0 && (near - away).abs() < 1e-2 * near + 1e-6, "{near} {away}");
 }
+
+/// Neither the order of the runs nor what they are called says anything.
+#[test]
+fn models_do_not_depend_on_the_order_and_names_of_runs() {
+    let errors = |order: [usize; 4], name: fn(usize) -> String| {
+        let all = bench(0.0, 1.0);
+        let renamed = |i: usize| BenchRecord { id: name(i), ..all[i].clone() };
+        let records = order.map(renamed);
+        let families = vec![Family::BoucWen, Family::StaticPreisach];
+        let candidates = Candidates { families, orders: vec![] };
+        let settings = settings(FlapZero::MajorLoopMean);
+        let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
+        let mut errors = vec![0.0; 4 * table.rows.len()];
+        for (row, own) in table.rows.iter().enumerate() {
+            for (fit, i) in own.fitted.as_ref().unwrap().fits.iter().zip(order) {
+                errors[4 * row + i] = fit.nrmse;
+            }
+        }
+        (table.best().unwrap().family, errors)
+    };
+    let (family, as_given) = errors([0, 1, 2, 3], |i| format!("run {i}"));
+    for order in [[3, 1, 0, 2], [2, 3, 1, 0]] {
+        let (other, found) = errors(order, |i| format!("{}", 100 - i));
+        assert_eq!(family, other);
+        for (a, b) in as_given.iter().zip(&found) {
+            assert!((a - b).abs() < 1e-3 * a, "{as_given:?} {found:?}");
+        }
+    }
+}

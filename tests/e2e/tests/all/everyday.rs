@@ -101,3 +101,28 @@ fn lost_motion_is_a_sure_class_where_samples_miss_the_turns() {
     let found = Findings::from(&found);
     assert_eq!(found.class_confidence, Some(Confidence::Confident), "{:?}", found.class);
 }
+
+/// A folder of measured runs alone, one of them at rest, with nothing beside it: identified, and diagnosed without confidence.
+#[test]
+fn a_bare_folder_with_a_record_at_rest_is_identified_and_diagnosed() {
+    let made = set(&Request::new(Family::Relays, 15_001, Deal::Everyday));
+    let mut files = made.measured;
+    let (_, list) = files.iter_mut().find(|(name, _)| name == "dataset.ron").unwrap();
+    *list = list.replace("runs: [", "runs: [(id: \"rest\", file: \"rest.csv\", role: Measured),");
+    let noise = |i: u32| 0.2 * (7919.0 * f64::from(i)).sin();
+    let row = |i: u32| format!("{:.3},65,{:.4}\n", 1e-3 * f64::from(i), noise(i));
+    let rows: String = (0..4000).map(row).collect();
+    files.push(("rest.csv".into(), format!("time_s,command_V,displacement_um\n{rows}")));
+    let data = bench(&files);
+    let settings = preisach_dyn::identify::Settings::default();
+    let found = bench_study::identification::identify_bench(&data, &settings, None).unwrap();
+    let findings = &found.identification.summary.findings;
+    let told: Vec<String> = findings.iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|text| text.contains("is at rest: noise")), "{told:?}");
+    let trained = found.fits.iter().filter(|fit| fit.use_as == rotor_base::RecordUse::Train);
+    let worst = trained.map(|fit| fit.nrmse_percent).fold(0.0, f64::max);
+    assert!(worst > 0.0 && worst < 20.0, "{worst}");
+    let found = diagnose(&Records::from(&data), &Question::default()).unwrap();
+    assert!(!found.has_reference);
+    assert_eq!(Findings::from(&found).confidence, Confidence::Tentative);
+}

@@ -1,0 +1,199 @@
+//! Parameters in physical terms: what a search calls `ln gain` as a gain with its 95 % interval.
+
+use preisach_dyn::identify::Estimate;
+use preisach_dyn::{ActuatorLaw, ActuatorModel};
+use serde::Serialize;
+
+/// A parameter of a model in physical terms.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PhysicalParameter {
+    /// What it is.
+    pub name: String,
+    /// Its unit; empty of a plain number.
+    pub unit: String,
+    /// Its value.
+    pub value: f64,
+    /// Ends of its 95 % interval; none if the records do not determine it.
+    pub interval: Option<[f64; 2]>,
+    /// What else is to be known of the interval: where it comes from, that it reaches a bound.
+    pub remark: Option<&'static str>,
+}
+
+/// Half of a 95 % interval over the standard deviation.
+const HALF: f64 = 1.96;
+/// Part of an interval that ends next to a bound.
+const NEAR: f64 = 1e-3;
+
+/// Unit of a parameter, in terms of those of input and output.
+#[derive(Clone, Copy)]
+enum Of {
+    Input,
+    Output,
+    Gain,
+    Word(&'static str),
+}
+
+/// How a number of a search is read.
+struct Reading {
+    name: &'static str,
+    unit: Of,
+    /// The physical value, up to a factor.
+    of: fn(f64) -> f64,
+    /// Where the model has it: gives the factor.
+    at: fn(&ActuatorModel) -> Option<f64>,
+    /// Bounds of it, before the factor.
+    bounds: [f64; 2],
+}
+
+const FREE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+fn share(x: f64) -> f64 {
+    1.0 / (1.0 + (-x).exp())
+}
+
+fn nowhere(_: &ActuatorModel) -> Option<f64> {
+    None
+}
+
+fn gain(model: &ActuatorModel) -> Option<f64> {
+    match &model.law {
+        ActuatorLaw::Linear(law) => Some(law.gain_deg_per_volt),
+        ActuatorLaw::BoucWen(law) => Some(law.parameters().gain_deg_per_volt),
+        ActuatorLaw::PrandtlIshlinskii(law) => Some(law.parameters().gain_deg_per_volt),
+        _ => None,
+    }
+}
+
+fn half_height(model: &ActuatorModel) -> Option<f64> {
+    let ActuatorLaw::BoucWen(law) = &model.law else { return None };
+    Some(law.parameters().half_height_deg)
+}
+
+fn reading(name: &str) -> Option<Reading> {
+    let plain = |name, unit, of, bounds| Reading { name, unit, of, at: nowhere, bounds };
+    Some(match name {
+        "gain, relative" => Reading { at: gain, ..plain("gain", Of::Gain, |x| 1.0 + x, FREE) },
+        "ln gain" => Reading { at: gain, ..plain("gain", Of::Gain, f64::exp, FREE) },
+        "ln time constant, s" => plain("time constant of the lag", Of::Word("s"), f64::exp, FREE),
+        "quadratic, artanh" => plain(
+            "quadratic part of the output curve",
+            Of::Word(""),
+            |x| 0.45 * x.tanh(),
+            [-0.45, 0.45],
+        ),
+        "cubic, artanh" => {
+            plain("cubic part of the output curve", Of::Word(""), |x| 0.3 * x.tanh(), [-0.3, 0.3])
+        }
+        "loop height, logit" => Reading {
+            at: half_height,
+            ..plain("half height of a wide loop", Of::Output, share, [0.0, 1.0])
+        },
+        "ln rise over 20 V" => plain("rise of a loop", Of::Input, |x| 20.0 * x.exp(), FREE),
+        "ln (2 sigma - 1)" => {
+            plain("sigma", Of::Word(""), |x| 0.5 + 0.5 * x.exp(), [0.5, f64::INFINITY])
+        }
+        "ln growth of the half-widths, s" => {
+            plain("growth of the half-widths", Of::Word("s"), f64::exp, FREE)
+        }
+        "ln relaxation time, s" => plain("relaxation time", Of::Word("s"), f64::exp, FREE),
+        "share at once, logit" => {
+            plain("share that follows at once", Of::Word("%"), |x| 30.0 * share(x), [0.0, 30.0])
+        }
+        "creep per decade, logit" => {
+            plain("creep", Of::Word("%/decade"), |x| 6.0 * share(x), [0.0, 6.0])
+        }
+        "root of the share of the accommodation" => plain(
+            "share of the accommodation",
+            Of::Word("%"),
+            |x| (100.0 * x * x).min(50.0),
+            [0.0, 50.0],
+        ),
+        "ln travel of the accommodation over the stroke" => {
+            plain("travel of the accommodation", Of::Word("strokes"), f64::exp, FREE)
+        }
+        _ => return None,
+    })
+}
+
+/// Parameters in physical terms; those of a shape without a name of its own stay as the fit holds them.
+pub(super) fn physical(
+    estimates: &[Estimate],
+    model: &ActuatorModel,
+    [input, output]: [&str; 2],
+) -> Vec<PhysicalParameter> {
+    let one = |estimate: &Estimate| {
+        let Estimate { value, std_deviation, .. } = *estimate;
+        let half = HALF * std_deviation;
+        let tied = estimate.is_tied().then_some("tied to its usual value");
+        let Some(Reading { name, unit, of, at, bounds }) = reading(&estimate.name) else {
+            return PhysicalParameter {
+                name: estimate.name.clone(),
+                unit: String::new(),
+                value,
+                interval: half.is_finite().then_some([value - half, value + half]),
+                remark: tied,
+            };
+        };
+        let here = of(value);
+        let factor = at(model).filter(|_| here != 0.0).map_or(1.0, |own| own / here);
+        // a square is not negative on either side of zero
+        let ends = [of(value - half), of(value + half)];
+        let is_square = estimate.name.starts_with("root");
+        let low = if is_square && half > value.abs() { 0.0 } else { f64::min(ends[0], ends[1]) };
+        let high = f64::max(ends[0], ends[1]);
+        let is_near = |bound: f64| {
+            bound.is_finite()
+                && (here - bound).abs() <= NEAR * (bounds[1] - bounds[0]).abs().min(1.0)
+        };
+        let at_bound = bounds.into_iter().any(is_near).then_some("at its bound");
+        let scaled = [factor * low, factor * high];
+        PhysicalParameter {
+            name: name.to_owned(),
+            unit: match unit {
+                Of::Input => input.to_owned(),
+                Of::Output => output.to_owned(),
+                Of::Gain => format!("{output}/{input}"),
+                Of::Word(word) => word.to_owned(),
+            },
+            value: factor * here,
+            interval: half
+                .is_finite()
+                .then_some([f64::min(scaled[0], scaled[1]), f64::max(scaled[0], scaled[1])]),
+            remark: at_bound.or(tied),
+        }
+    };
+    estimates.iter().map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use preisach_dyn::VoltageRange;
+
+    fn estimate(name: &str, value: f64, std_deviation: f64) -> Estimate {
+        Estimate { name: name.into(), value, std_deviation, usual_share: 0.0 }
+    }
+
+    #[test]
+    fn logarithms_are_read_as_what_they_are_of() {
+        let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+        let estimates = [
+            estimate("gain, relative", 0.25, 0.05),
+            estimate("ln time constant, s", 0.01_f64.ln(), 0.1),
+            estimate("ln rise over 20 V", 0.0, f64::INFINITY),
+            estimate("creep per decade, logit", -20.0, 0.5),
+            estimate("ln mu0 per centre", 0.3, 0.1),
+        ];
+        let found = physical(&estimates, &model, ["V", "deg"]);
+        let own = gain(&model).unwrap();
+        assert_eq!((found[0].value, found[0].unit.as_str()), (own, "deg/V"));
+        let [low, high] = found[0].interval.unwrap();
+        assert!((high - low - own * 2.0 * HALF * 0.05 / 1.25).abs() < 1e-12);
+        assert_eq!(found[1].unit, "s");
+        let [low, high] = found[1].interval.unwrap();
+        assert!((low - 0.01 * (-0.196_f64).exp()).abs() < 1e-12 && high > 0.012, "{low} {high}");
+        assert_eq!((found[2].value, found[2].interval), (20.0, None));
+        assert_eq!(found[3].remark, Some("at its bound"));
+        assert_eq!((found[4].name.as_str(), found[4].value), ("ln mu0 per centre", 0.3));
+    }
+}
