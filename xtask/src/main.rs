@@ -552,6 +552,9 @@ fn validation(root: &Path, options: &Validation) -> Result<ExitCode, XtaskError>
         let stale = validate::stale_lines(&files::read(&page)?, &collected.rows);
         text.extend(stale.iter().map(|line| format!("stale page, {line}\n")));
         failed |= !stale.is_empty();
+    } else if collected.left_out() > 0 {
+        text.push_str("not written, as rows were left out; without `--rows` they are computed\n");
+        failed = true;
     } else if options.filter.is_empty() && collected.missing.is_empty() {
         files::write_atomically(&page, &validate::render(&collected.rows))?;
         text.extend(["written: ", &page.display().to_string(), "\n"]);

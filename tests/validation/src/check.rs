@@ -68,6 +68,7 @@ pub struct Check {
     source: &'static str,
     criterion: Criterion,
     repeatability: Repeatability,
+    pub(crate) is_long: bool,
     measure: Measure,
 }
 
@@ -124,7 +125,7 @@ impl Draft {
     pub const fn kept(self, criterion: Criterion, measure: Measure) -> Check {
         let Self { id, quantity, unit, source } = self;
         let repeatability = Repeatability::Everywhere;
-        Check { id, quantity, unit, source, criterion, repeatability, measure }
+        Check { id, quantity, unit, source, criterion, repeatability, is_long: false, measure }
     }
 }
 
@@ -133,6 +134,13 @@ impl Check {
     #[must_use]
     pub const fn machine_dependent(self) -> Self {
         Self { repeatability: Repeatability::MachineDependent, ..self }
+    }
+
+    /// A check too long for every change: computed where [`LONG`](crate::LONG) asks for it, as
+    /// `cargo xtask validate` does. Elsewhere its row says that it was left out.
+    #[must_use]
+    pub const fn long(self) -> Self {
+        Self { is_long: true, ..self }
     }
 }
 
@@ -153,6 +161,8 @@ pub struct Row {
     pub repeatability: Repeatability,
     /// The quantity as computed, or why it could not be.
     pub got: Result<f64, String>,
+    /// Whether it is long and was left out; `got` then holds no value.
+    pub is_left_out: bool,
     /// Time the computation took, s; what rows share counts for the first of them.
     pub seconds: f64,
 }
@@ -162,6 +172,12 @@ impl Row {
     pub fn of(check: &Check) -> Self {
         let start = Instant::now();
         let got = (check.measure)().map_err(|error| error.to_string());
+        let seconds = start.elapsed().as_secs_f64();
+        Self { got, is_left_out: false, seconds, ..Self::left_out(check) }
+    }
+
+    /// The row of a check that is not done.
+    pub fn left_out(check: &Check) -> Self {
         Self {
             id: check.id.to_owned(),
             quantity: check.quantity.to_owned(),
@@ -169,8 +185,9 @@ impl Row {
             source: check.source.to_owned(),
             criterion: check.criterion,
             repeatability: check.repeatability,
-            got,
-            seconds: start.elapsed().as_secs_f64(),
+            got: Err("left out: `cargo xtask validate` computes it".to_owned()),
+            is_left_out: true,
+            seconds: 0.0,
         }
     }
 
@@ -208,6 +225,9 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Wanted;
+
+    const EVERY: Wanted = Wanted { folder: None, filter: "", with_long: true };
 
     #[test]
     fn bounds_hold_on_their_side_and_refuse_what_is_no_number() {
@@ -244,7 +264,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let failure = std::panic::catch_unwind(|| {
             let check = row("V-ACT-01", "quantity", "m").at_most(1.0, || Ok(2.0));
-            crate::hold_in(Some(folder.path()), "", &[check]);
+            crate::hold_in(&Wanted { folder: Some(folder.path()), ..EVERY }, &[check]);
         });
         let said = failure.unwrap_err().downcast::<String>().unwrap();
         assert!(said.contains("V-ACT-01, quantity: Ok(2.0)"), "{said}");
@@ -254,8 +274,22 @@ mod tests {
     #[test]
     fn what_the_filter_leaves_out_is_not_computed() {
         let check = row("V-ACT-01", "quantity", "m").at_most(1.0, || Err("computed".into()));
-        crate::hold_in(None, "V-FEM", &[check]);
-        let failure = std::panic::catch_unwind(|| crate::hold_in(None, "V-ACT", &[check]));
-        assert!(failure.is_err());
+        crate::hold_in(&Wanted { filter: "V-FEM", ..EVERY }, &[check]);
+        let held = || crate::hold_in(&Wanted { filter: "V-ACT", ..EVERY }, &[check]);
+        assert!(std::panic::catch_unwind(held).is_err());
+    }
+
+    #[test]
+    fn a_long_check_is_computed_where_it_is_asked_for_and_leaves_a_row_everywhere() {
+        let folder = tempfile::tempdir().unwrap();
+        let check = row("V-ACT-01", "quantity", "m").at_most(1.0, || Ok(2.0)).long();
+        let wanted = Wanted { folder: Some(folder.path()), ..EVERY };
+        crate::hold_in(&Wanted { with_long: false, ..wanted }, &[check]);
+        let left = Row::read(folder.path(), "V-ACT-01").unwrap().unwrap();
+        assert!(left.is_left_out && left.got.is_err() && !left.passes(), "{left:?}");
+        let held = || crate::hold_in(&wanted, &[check]);
+        assert!(std::panic::catch_unwind(held).is_err());
+        let done = Row::read(folder.path(), "V-ACT-01").unwrap().unwrap();
+        assert_eq!((done.got, done.is_left_out), (Ok(2.0), false));
     }
 }

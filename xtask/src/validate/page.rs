@@ -11,6 +11,15 @@ const COLUMNS: usize = 8;
 /// Column of the computed quantity.
 const GOT: usize = 4;
 
+/// Column of the verdict.
+const PASS: usize = 6;
+
+/// The verdict on a row that holds.
+const YES: &str = "yes";
+
+/// What a long row that was left out has in their place.
+const LEFT_OUT: &str = "left out";
+
 /// Titles of the columns.
 pub(super) const TITLES: [&str; COLUMNS] =
     ["id", "quantity", "unit", "expected", "got", "bound", "pass", "source"];
@@ -38,14 +47,16 @@ pub fn render(rows: &[Row]) -> String {
         }
         parts.push(format!("| {} |\n", cells(row).join(" | ")));
     }
-    let passed = rows.iter().filter(|row| row.passes()).count();
+    // what a stored page says of a row that was left out is looked at in its line
+    let passed = rows.iter().filter(|row| row.passes() || row.is_left_out).count();
     parts.push(format!("\n{passed} of {} checks passed.\n", rows.len()));
     parts.concat()
 }
 
 /// The lines of a stored page that do not say what the rows say now, each with what it should say.
 ///
-/// Figures may differ by 1 % of their bound (rounding differs between machines), times by anything.
+/// Figures may differ by 1 % of their bound (rounding differs between machines), times by anything. Of a row that
+/// was left out all but the figure is compared, and that it has passed.
 pub fn stale_lines(stored: &str, rows: &[Row]) -> Vec<String> {
     let fresh = render(rows);
     let (old, new): (Vec<&str>, Vec<&str>) = (stored.lines().collect(), fresh.lines().collect());
@@ -80,23 +91,34 @@ fn same_row(was: &str, is: &str, rows: &[Row]) -> bool {
     let Some(row) = rows.iter().find(|row| row.id == is[0]) else {
         return false;
     };
-    let others = (0..COLUMNS).filter(|i| *i != GOT).all(|i| was[i] == is[i]);
+    let same_but = |own: &[usize]| (0..COLUMNS).all(|i| own.contains(&i) || was[i] == is[i]);
+    if row.is_left_out {
+        return same_but(&[GOT, PASS]) && was[PASS] == YES && was[GOT].parse::<f64>().is_ok();
+    }
     let close = match (was[GOT].parse::<f64>(), is[GOT].parse::<f64>()) {
         (Ok(was), Ok(is)) => (was - is).abs() <= MACHINE_SCATTER * row.criterion.width(),
         _ => false,
     };
-    others && (close || row.repeatability == Repeatability::MachineDependent)
+    same_but(&[GOT]) && (close || row.repeatability == Repeatability::MachineDependent)
 }
 
 /// The cells of the table, in the order of [`TITLES`].
 pub(super) fn cells(row: &Row) -> [String; COLUMNS] {
     let [expected, bound] = shown(&row.criterion);
     let got = match (&row.got, row.criterion) {
+        _ if row.is_left_out => LEFT_OUT.to_owned(),
         (Ok(value), Criterion::Near { within, .. }) => precise(*value, within),
         (Ok(value), _) => figure(*value),
         (Err(_), _) => "not computed".to_owned(),
     };
-    let pass = if row.passes() { "yes" } else { "**no**" }.to_owned();
+    let pass = if row.passes() {
+        YES
+    } else if row.is_left_out {
+        LEFT_OUT
+    } else {
+        "**no**"
+    }
+    .to_owned();
     let [id, quantity, unit, source] =
         [&row.id, &row.quantity, &row.unit, &row.source].map(Clone::clone);
     [id, quantity, unit, expected, got, bound, pass, source]

@@ -2,7 +2,7 @@
 #![expect(clippy::disallowed_methods, reason = "tests read the shipped page")]
 
 use validation::{AREAS, Row, heading_of, ids, row};
-use xtask::validate::{collect, render, run_tests, stale_lines, text};
+use xtask::validate::{Collected, collect, render, run_tests, stale_lines, text};
 use xtask::workspace;
 
 /// Three rows of two areas.
@@ -42,6 +42,40 @@ fn a_page_is_fresh_until_a_figure_moves_by_more_than_the_scatter_of_machines() {
     }
     let shorter = page.lines().take(9).collect::<Vec<_>>().join("\n");
     assert!(!stale_lines(&shorter, &rows).is_empty());
+}
+
+#[test]
+fn a_long_row_that_was_left_out_is_counted_and_compared_but_for_its_figure() {
+    let stored = render(&rows());
+    let mut rows = rows();
+    let near = row(AREAS[0].ids[1], "quantity", "deg").against("theory").near(2.0, 0.1, || Ok(9.0));
+    rows[1] = Row::left_out(&near.long());
+    let fresh = |from: &str, to: &str| {
+        assert!(stored.contains(from), "{stored}");
+        stale_lines(&stored.replace(from, to), &rows)
+    };
+    assert!(fresh("2.05", "2.06").is_empty());
+    let line = stored.lines().find(|line| line.contains("2.05")).unwrap();
+    for (from, to) in [
+        (line.to_owned(), line.replace("yes", "**no**")),
+        (line.to_owned(), line.replace("2.05", "left out")),
+        (line.to_owned(), line.replace("± 0.1", "± 0.2")),
+        (format!("{line}\n"), String::new()),
+        ("4e-4".to_owned(), "4.2e-4".to_owned()),
+        ("3 of 3".to_owned(), "2 of 2".to_owned()),
+    ] {
+        assert!(!fresh(&from, &to).is_empty(), "{from} -> {to} passed unseen");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for row in &rows {
+        row.write(folder.path()).unwrap();
+    }
+    let collected = Collected { rows, missing: Vec::new() };
+    assert!(collected.passes() && collected.left_out() == 1);
+    let text = text(&collected);
+    assert!(text.contains("2 of 3 checks passed, 1 were left to `cargo xtask validate`"), "{text}");
+    let found = collect(folder.path(), AREAS[0].ids[1]).unwrap();
+    assert!(found.missing.is_empty() && found.left_out() == 1);
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub(crate) const ROWS: &[Check] = &[
         "deg",
     )
     .against(PERIODIC)
-    .at_most(0.02, collective_off),
+    .at_most(0.02, collective_off).long(),
 ];
 
 const CT_SIGMA: f64 = 0.07;

@@ -190,7 +190,8 @@ pub(crate) const ROWS: &[Check] = &[
         "-",
     )
     .against(SELF)
-    .at_most(0.005, inverse_over_feedback),
+    .at_most(0.005, inverse_over_feedback)
+    .long(),
     row(
         "V-STUDY-20",
         "loops called converged, all controllers, with and without limits, power \
@@ -199,7 +200,8 @@ pub(crate) const ROWS: &[Check] = &[
         "-",
     )
     .against("formed anew from T, loads and control of the record")
-    .at_most(10.0, still_asked),
+    .at_most(10.0, still_asked)
+    .long(),
 ];
 
 /// T in a free wake: largest distance at 2 to 5/rev.
