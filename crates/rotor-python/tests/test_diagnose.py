@@ -33,5 +33,5 @@ def test_points_of_test_need_a_case(hhc, tmp_path):
         rotor_hhc.diagnose(points)
     with pytest.raises(rotor_hhc.Error) as refused:
         rotor_hhc.diagnose(tmp_path / "none", QUICK)
-    said = hhc("diagnose", QUICK, "--data", tmp_path / "none", "-o", "out").stderr.strip()
+    said = hhc("diagnose", QUICK, "--data", tmp_path / "none", "-o", "out").stderr.strip().removeprefix("error: ")
     assert str(refused.value) == said

@@ -94,7 +94,7 @@ def test_errors_have_the_words_of_the_command(tmp_path, hhc):
         ran = hhc(*arguments)
         with pytest.raises(rotor_hhc.Error) as refused:
             call()
-        assert str(refused.value) == ran.stderr.strip(), arguments
+        assert str(refused.value) == ran.stderr.strip().removeprefix("error: "), arguments
         assert refused.value.exit_code == ran.returncode == 2
     with pytest.raises(rotor_hhc.Error, match="unknown choice `glauert`; known here: uniform, drees"):
         rotor_hhc.trim(QUICK, inflow="glauert")

@@ -36,7 +36,7 @@ def test_a_history_settles_on_the_response_at_its_frequency():
 
 
 def test_what_is_out_of_range_has_the_words_of_the_command(hhc):
-    said = hhc("section", "--reduced-frequency", "0.1", "--mach", "1.2").stderr.strip()
+    said = hhc("section", "--reduced-frequency", "0.1", "--mach", "1.2").stderr.strip().removeprefix("error: ")
     with pytest.raises(rotor_hhc.Error) as refused:
         rotor_hhc.section_response(0.1, mach=1.2)
     assert str(refused.value) == said

@@ -137,7 +137,7 @@ pub(crate) fn stored_actuator(
 /// A case with the actuators of single flaps of its flight read, and what must be said about them.
 ///
 /// # Errors
-/// A file that is missing; those of [`stored_actuator`].
+/// A file that is missing or holds no actuator.
 pub fn with_flap_actuators(loaded: &LoadedCase) -> Result<(LoadedCase, Vec<String>), Problems> {
     let (mut read, mut warnings) = (loaded.clone(), Vec::new());
     let own = read.case.flight.iter_mut().flat_map(|flight| &mut flight.flap_actuators);

@@ -96,14 +96,14 @@ impl Outline {
         let singular = ExactError::Singular { mach: 0.0, k: 0.0 };
         let found = matrix.lu().solve(&right).ok_or(singular)?;
         let (mut force, mut moment) = (Complex64::ZERO, 0.0);
-        for i in 0..count {
+        for (i, panel) in panels.iter().enumerate() {
             let strengths = (0..count).map(|j| induced(i, j) * (found[j] + vortex * found[count]));
-            let speed = ((stream + strengths.sum::<Complex64>()) * along(&panels[i])).re;
+            let speed = ((stream + strengths.sum::<Complex64>()) * along(panel)).re;
             let pressure = 1.0 - speed * speed;
-            let length = (panels[i][1] - panels[i][0]).norm();
+            let length = (panel[1] - panel[0]).norm();
             let own = -normal(i) * (pressure * length);
             force += own;
-            moment -= ((middle(&panels[i]) - 0.25).conj() * own).im;
+            moment -= ((middle(panel) - 0.25).conj() * own).im;
         }
         Ok([(force * stream).im, moment])
     }

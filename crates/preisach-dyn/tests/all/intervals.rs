@@ -2,13 +2,13 @@
 //! the recorded command.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
+use chacha20::ChaCha8Rng;
 use preisach_dyn::identify::{BenchRecord, Candidates, Estimate, Family, Settings, compare_models};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, BoucWen, BoucWenParameters, Calibration, Envelope, VoltageRange,
 };
 use rand::SeedableRng;
 use rand::seq::IndexedRandom;
-use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Normal};
 use std::f64::consts::TAU;
 
