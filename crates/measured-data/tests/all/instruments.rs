@@ -1,4 +1,5 @@
 //! One record as many instruments and programs write it: in unchanged, or refused with a remedy that works at once.
+#![expect(clippy::print_stdout, reason = "the counts are worth seeing")]
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures and what was written")]
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 

@@ -1,4 +1,5 @@
 //! Manners of the command: one word for an error, one run, nothing written unasked, standard input, the units of the data.
+#![expect(clippy::disallowed_methods, reason = "a file is piped into the program")]
 
 use crate::place::{Place, write_bench};
 use std::fmt::Write;

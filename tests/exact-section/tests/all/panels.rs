@@ -41,7 +41,7 @@ impl KarmanTrefftz {
         };
         let points: Vec<Complex64> = (0..=panels).map(at).collect();
         let fine = (1..20_000).map(|k| {
-            let angle = start - TAU * k as f64 / 20_000.0;
+            let angle = start - TAU * f64::from(k) / 20_000.0;
             self.mapped(self.centre + Complex64::from_polar(self.radius(), angle))[0].re
         });
         let nose = fine.fold(f64::INFINITY, f64::min);
@@ -64,7 +64,7 @@ impl KarmanTrefftz {
         let count = 400;
         let moment: f64 = (0..count)
             .map(|k| {
-                let out = Complex64::from_polar(3.0, TAU * k as f64 / f64::from(count));
+                let out = Complex64::from_polar(3.0, TAU * f64::from(k) / f64::from(count));
                 let from = out - self.centre;
                 // circulation is clockwise with lift up
                 let velocity = turn.conj() - turn * (radius * radius) / (from * from)
@@ -101,9 +101,9 @@ fn panels_meet_a_section_with_a_closed_form() {
     }
 }
 
-/// What the cases of HART II and HeliNOVI have for their NACA 23012, beside thin-aerofoil theory of its mean line.
+/// The zero lift of the section of HART II, beside thin-aerofoil theory of its mean line.
 #[test]
-fn naca_23012_has_the_zero_lift_of_the_measured_cases() {
+fn naca_23012_is_near_its_mean_line() {
     let of = |panels| linear_section(&Outline::naca_23012(panels)).unwrap();
     let [coarse, fine] = [of(100), of(200)];
     // errors fall with the number of panels
