@@ -1,7 +1,7 @@
 //! Flights of the maps beside the loop of the study, and what each disturbance does.
 
 use super::*;
-use crate::case::ControllerChoice;
+use crate::case::{ControllerChoice, HandedSet, HandedT};
 
 fn case() -> Case {
     let mut case = Case::default();
@@ -103,5 +103,32 @@ fn controllers_share_their_noise() {
         let theory = (GAIN / 2.0).acos().to_degrees();
         assert!((margins.common_phase_deg - theory).abs() < 1.0, "{margins:?}");
         assert!(margins.condition > 1.0 && margins.flap_overshoot_deg.len() == 2);
+    });
+}
+
+/// A T that is handed in is that of the controllers, the rotor answers with its own: what the one errs by is taken off the margins,
+/// and nothing is left where that alone diverges.
+#[test]
+fn a_t_that_is_handed_in_is_not_turned_against_itself() {
+    with_flights(|flights, case, rotor, drives| {
+        let own = flights.margins().unwrap();
+        let of = |phase_deg: f64| {
+            let columns = flights.own_t.turned(1.0, phase_deg.to_radians()).unwrap().columns();
+            let advance_ratios = vec![case.advance_ratio];
+            let handed = HandedSet { harmonics: vec![3], advance_ratios, columns: vec![columns] };
+            let mut case = case.clone();
+            let handed = HandedT { sets: vec![handed], ..HandedT::default() };
+            case.control.handed_t = Some(std::sync::Arc::new(handed));
+            let set = ControlSet::new(&case, rotor, drives, &[3]).unwrap();
+            let flights = Flights::new(&set).unwrap();
+            let ratio = end(&flights.fly(Known::Fixed, &NONE, SEED).unwrap());
+            (flights.margins().unwrap(), ratio)
+        };
+        let (off, _) = of(30.0);
+        println!("{} deg, {} left", own.common_phase_deg, off.common_phase_deg);
+        assert!((off.common_phase_deg - (own.common_phase_deg - 30.0)).abs() < 1.0, "{off:?}");
+        let (beyond, ratio) = of(100.0);
+        assert!(beyond.common_phase_deg == 0.0 && beyond.common_gain <= 1.0, "{beyond:?}");
+        assert!(ratio > 1.0, "and it does diverge: {ratio}");
     });
 }
