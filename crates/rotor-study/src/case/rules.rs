@@ -136,12 +136,10 @@ fn check_flaps(check: &mut Checker, case: &Case) {
 fn check_section(check: &mut Checker, case: &Case) {
     let a = &case.aerodynamics;
     check_airfoils(check, &a.airfoils);
+    let remedy = "the tables of airfoils hold the camber: leave it out";
     let camber = [("zero_lift_deg", a.zero_lift_deg), ("zero_lift_moment", a.zero_lift_moment)];
     for (field, _) in camber.iter().filter(|given| given.1 != 0.0 && !a.airfoils.is_empty()) {
-        check.refuse(
-            &format!("aerodynamics.{field}"),
-            "the tables of airfoils hold the camber: leave it out",
-        );
+        check.refuse(&format!("aerodynamics.{field}"), remedy);
     }
     let remedy = "1 is no loss, 0.97 is usual; outboard of the root cut-out";
     let least = case.rotor.root_cutout_r.max(0.5);
