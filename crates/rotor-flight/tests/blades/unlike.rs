@@ -1,41 +1,21 @@
 //! Blades unlike the rest and flaps with actuators of their own in flight, against the nonlinear rotor blade by blade.
-#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
-mod common;
-
-use common::actuator;
+use crate::common::actuator;
+use crate::{ADVANCE_RATIO, BLADES, case, of_order, size};
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_flight::{FlightPoint, FlightState, FlyingCase, RotorPath};
 use rotor_study::case::{
-    AttachedFlowModel, Case, DissimilarBlade, FlapActuator, FlightController, FlightValues, Notice,
+    Case, DissimilarBlade, FlapActuator, FlightController, FlightValues, Notice,
 };
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled};
+use rotor_study::{TrimmedRotor, scaled};
 use std::sync::Arc;
-
-const ADVANCE_RATIO: f64 = 0.3;
-const BLADES: usize = 4;
-
-fn case() -> Case {
-    let mut case = Case { advance_ratio: ADVANCE_RATIO, ..Case::default() };
-    case.structure.elements = 4;
-    case.aerodynamics.model = AttachedFlowModel::QuasiSteady;
-    case
-}
 
 fn unlike() -> Vec<DissimilarBlade> {
     let heavy =
         DissimilarBlade { blade: 3, mass: 1.03, pitch_deg: 0.3, ..DissimilarBlade::default() };
     let weak = DissimilarBlade { blade: 2, flap_motion: 0.5, ..DissimilarBlade::default() };
     vec![heavy, weak]
-}
-
-fn of_order(order: usize) -> std::ops::Range<usize> {
-    (order - 1) * HUB_OUTPUTS..order * HUB_OUTPUTS
-}
-
-fn size(loads: &[f64]) -> f64 {
-    loads.iter().map(|z| z * z).sum::<f64>().sqrt()
 }
 
 fn still() -> Vec<HarmonicSeries> {

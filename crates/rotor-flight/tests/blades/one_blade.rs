@@ -1,34 +1,12 @@
 //! A flap that fails on one blade: what the hub feels against the nonlinear rotor blade by blade, and flights through it.
-#![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
-mod common;
-
-use common::actuator;
+use crate::common::actuator;
+use crate::{ADVANCE_RATIO, BLADES, case, of_order, size};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_flight::{FlightError, FlightPoint, FlightState, FlyingCase, RotorPath};
 use rotor_response::hub_loads;
-use rotor_study::case::{
-    AttachedFlowModel, Case, FailedFlap, FailedOn, FlightController, FlightValues, Notice,
-};
-use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled};
-
-const ADVANCE_RATIO: f64 = 0.3;
-const BLADES: usize = 4;
-
-fn case() -> Case {
-    let mut case = Case { advance_ratio: ADVANCE_RATIO, ..Case::default() };
-    case.structure.elements = 4;
-    case.aerodynamics.model = AttachedFlowModel::QuasiSteady;
-    case
-}
-
-fn of_order(order: usize) -> std::ops::Range<usize> {
-    (order - 1) * HUB_OUTPUTS..order * HUB_OUTPUTS
-}
-
-fn size(loads: &[f64]) -> f64 {
-    loads.iter().map(|z| z * z).sum::<f64>().sqrt()
-}
+use rotor_study::case::{FailedFlap, FailedOn, FlightController, FlightValues, Notice};
+use rotor_study::{TrimmedRotor, scaled};
 
 /// One blade moves its inboard flap otherwise: at every order the loads that this adds are those of the nonlinear rotor whose
 /// blades answer each for itself. Half of the motion would not be taken for it.
