@@ -14,7 +14,8 @@
 //! | its page: maps and carpets over two axes, parallel coordinates, reduction against power | `page` |
 //! | the script of an array of Slurm, the part of a task | `shard` |
 //!
-//! No result depends on thread, order or shard: a case is read from its own text and starts from no other.
+//! No result depends on thread, order or shard: a case is read from its own text; what a [`Runner`] shares among cases must
+//! leave every result as it is alone.
 
 mod error;
 mod file;

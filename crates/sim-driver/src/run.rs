@@ -87,7 +87,7 @@ pub fn run_trimmed(
         loaded.located(StudyError::Response { field: field.to_owned(), source })
     };
     let stability = trimmed.stability().map_err(|source| at("rotor", source))?;
-    let stability = StabilityLine::from(&stability);
+    let stability = StabilityLine::from(stability);
     let unstable = || stability.warnings(trimmed.trim().flight.advance_ratio);
     let mut powerless = None;
     // without a converged trim nothing is controlled

@@ -13,8 +13,9 @@ use serde::Deserialize;
 use crate::workspace::cargo;
 use crate::{XtaskError, files};
 
-/// Folders of the members that are published.
-const PUBLISHED: [&str; 2] = ["crates/", "fixtures/"];
+/// Folders of the members that are of use in this repository alone. The generators and oracles among the tests are not: others
+/// can try their own tools with them, and cargo packages no member that needs one it may not publish.
+const OF_REPOSITORY: [&str; 2] = ["xtask/", "tests/e2e/"];
 
 /// A member as `cargo metadata` describes it.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
@@ -81,7 +82,7 @@ impl Manifest {
     /// What is missing or wrong for a registry. `folder` is that of the member from the root, with `/` at its end.
     pub fn faults(&self, folder: &str) -> Vec<String> {
         let name = &self.name;
-        let is_meant = PUBLISHED.iter().any(|published| folder.starts_with(published));
+        let is_meant = !OF_REPOSITORY.contains(&folder);
         if self.is_published() != is_meant {
             let remedy =
                 if is_meant { "remove `publish = false`" } else { "add `publish = false`" };
@@ -211,8 +212,9 @@ pub fn check(root: &Path, target: &Path, install: bool) -> Result<Packed, XtaskE
     let begun = Instant::now();
     let mut packed = Packed::default();
     let root_text = format!("{}/", root.display());
-    let mut arguments =
-        ["package", "--no-verify", "--allow-dirty", "--offline"].map(String::from).to_vec();
+    let mut arguments = ["package", "--workspace", "--no-verify", "--allow-dirty", "--offline"]
+        .map(String::from)
+        .to_vec();
     let members = manifests(root)?;
     let of_registry: Vec<&Manifest> = members.iter().filter(|own| own.is_published()).collect();
     for member in &members {
@@ -220,7 +222,6 @@ pub fn check(root: &Path, target: &Path, install: bool) -> Result<Packed, XtaskE
         packed.faults.extend(member.faults(path.trim_end_matches("Cargo.toml")));
     }
     for member in &of_registry {
-        arguments.extend(["-p".to_owned(), member.name.clone()]);
         packed.names.push(member.name.clone());
     }
     arguments.extend(["--target-dir".to_owned(), target.display().to_string()]);

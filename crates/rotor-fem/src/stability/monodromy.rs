@@ -60,7 +60,8 @@ struct PlaceStep {
     lags: Vec<LagStep>,
 }
 
-/// State of all columns: displacements over rates, and lags.
+/// States of all solutions, one a row: displacements beside rates, and lags. There are many solutions, as many as lags, so that a
+/// column, one unknown of them all, is what is worked on.
 struct State {
     motion: DMatrix<f64>,
     lags: DMatrix<f64>,
@@ -136,13 +137,6 @@ impl Stepper {
     }
 }
 
-fn stacked(above: &DMatrix<f64>, below: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(above.nrows() + below.nrows(), above.ncols());
-    out.rows_mut(0, above.nrows()).copy_from(above);
-    out.rows_mut(above.nrows(), below.nrows()).copy_from(below);
-    out
-}
-
 /// The matrix that carries displacements, rates and lags over one revolution from azimuth 0.
 ///
 /// # Errors
@@ -157,8 +151,8 @@ pub(crate) fn monodromy(
     let lags = places.iter().map(|place| place.channels.len()).sum();
     let size = 2 * dof + lags;
     let mut state = State {
-        motion: DMatrix::identity(2 * dof, size),
-        lags: DMatrix::from_fn(lags, size, |i, j| f64::from(u8::from(2 * dof + i == j))),
+        motion: DMatrix::identity(size, 2 * dof),
+        lags: DMatrix::from_fn(size, lags, |j, i| f64::from(u8::from(2 * dof + i == j))),
     };
     let gauss = time.gauss_per_element();
     let basis = LagrangeBasis::new(gauss_legendre(gauss).nodes);
@@ -190,7 +184,10 @@ pub(crate) fn monodromy(
             state = carry(&stepper, &equations, &at, step, &state).ok_or(singular)?;
         }
     }
-    Ok(stacked(&state.motion, &state.lags))
+    let mut whole = DMatrix::zeros(size, size);
+    whole.rows_mut(0, 2 * dof).tr_copy_from(&state.motion);
+    whole.rows_mut(2 * dof, lags).tr_copy_from(&state.lags);
+    Ok(whole)
 }
 
 impl PlaceStep {
@@ -262,7 +259,7 @@ impl LagStep {
     }
 }
 
-/// All columns a step later; none if a stage cannot be solved.
+/// All solutions a step later; none if a stage cannot be solved.
 fn carry(
     stepper: &Stepper,
     equations: &[Coefficients; STAGES],
@@ -270,24 +267,66 @@ fn carry(
     step: f64,
     state: &State,
 ) -> Option<State> {
-    let (dof, columns) = (state.motion.nrows() / 2, state.motion.ncols());
-    let (x, v) = (state.motion.rows(0, dof), state.motion.rows(dof, dof));
+    let dof = state.motion.ncols() / 2;
+    let stages = stage_accelerations(stepper, equations, places, step, state)?;
+    let rates = state.motion.columns(dof, dof);
+    // motion beside rates, moved by the accelerations at the stages
+    let moved = |after: f64, twice: &[f64; STAGES], once: &[f64; STAGES]| {
+        let mut motion = state.motion.clone();
+        for c in 0..dof {
+            let mut place = motion.column_mut(c);
+            place.axpy(after, &rates.column(c), 1.0);
+            for k in 0..STAGES {
+                place.axpy(step * step * twice[k], &stages.column(k * dof + c), 1.0);
+            }
+            let mut rate = motion.column_mut(dof + c);
+            for k in 0..STAGES {
+                rate.axpy(step * once[k], &stages.column(k * dof + c), 1.0);
+            }
+        }
+        motion
+    };
+    let at_stage: [DMatrix<f64>; STAGES] = std::array::from_fn(|j| {
+        moved(step * stepper.nodes[j], &stepper.twice[j], &stepper.once[j])
+    });
+    let mut lags = state.lags.clone();
+    let mut first = 0;
+    for place in places {
+        let inputs: Vec<DMatrix<f64>> =
+            place.inputs.iter().zip(&at_stage).map(|(c, motion)| motion * c.transpose()).collect();
+        for (k, lag) in place.lags.iter().enumerate() {
+            let mut own = lags.column_mut(first + k);
+            own *= lag.end_start;
+            for (j, input) in inputs.iter().enumerate() {
+                for (c, share) in lag.input.iter().enumerate() {
+                    own.axpy(lag.end_drive[j] * share, &input.column(c), 1.0);
+                }
+            }
+        }
+        first += place.lags.len();
+    }
+    Some(State { motion: moved(step, &stepper.end_twice, &stepper.weights), lags })
+}
+
+/// Accelerations at the stages, one after the other, of every solution; none if they cannot be solved for.
+fn stage_accelerations(
+    stepper: &Stepper,
+    equations: &[Coefficients; STAGES],
+    places: &[PlaceStep],
+    step: f64,
+    state: &State,
+) -> Option<DMatrix<f64>> {
+    let dof = state.motion.ncols() / 2;
+    let solutions = state.motion.nrows();
     // what motion and rate at stage j do at stage i
-    let mut coupling: Vec<Vec<DMatrix<f64>>> = (0..STAGES)
-        .map(|i| {
-            (0..STAGES)
-                .map(|j| {
-                    let mut whole = DMatrix::zeros(dof, 2 * dof);
-                    if i == j {
-                        whole.columns_mut(0, dof).copy_from(&equations[i].stiffness);
-                        whole.columns_mut(dof, dof).copy_from(&equations[i].damping);
-                    }
-                    whole
-                })
-                .collect()
-        })
-        .collect();
-    let mut right = DMatrix::zeros(STAGES * dof, columns);
+    let mut coupling: [[DMatrix<f64>; STAGES]; STAGES] =
+        std::array::from_fn(|_| std::array::from_fn(|_| DMatrix::zeros(dof, 2 * dof)));
+    for (i, equation) in equations.iter().enumerate() {
+        coupling[i][i].columns_mut(0, dof).copy_from(&equation.stiffness);
+        coupling[i][i].columns_mut(dof, dof).copy_from(&equation.damping);
+    }
+    let mut right = DMatrix::zeros(solutions, STAGES * dof);
+    let mut loads = DMatrix::zeros(solutions, 2);
     let mut first = 0;
     for place in places {
         for (i, row) in coupling.iter_mut().enumerate() {
@@ -295,25 +334,28 @@ fn carry(
                 let kernel = place.kernel(i, j) * &place.inputs[j];
                 whole.gemm(1.0, &place.loads[i], &kernel, 1.0);
             }
-            let mut loads = DMatrix::zeros(2, columns);
+            loads.fill(0.0);
             for (k, lag) in place.lags.iter().enumerate() {
-                let start = state.lags.row(first + k);
+                let start = state.lags.column(first + k);
                 for o in 0..2 {
-                    let mut load = loads.row_mut(o);
-                    load += start * (lag.gains[i][o] * lag.alpha[i]);
+                    loads.column_mut(o).axpy(lag.gains[i][o] * lag.alpha[i], &start, 1.0);
                 }
             }
-            let mut rows = right.rows_mut(i * dof, dof);
-            rows.gemm(-1.0, &place.loads[i], &loads, 1.0);
+            right.columns_mut(i * dof, dof).gemm(-1.0, &loads, &place.loads[i].transpose(), 1.0);
         }
         first += place.lags.len();
     }
     let mut matrix = DMatrix::zeros(STAGES * dof, STAGES * dof);
+    // what displacements and rates at the start do at the stages
+    let mut from_start = DMatrix::zeros(2 * dof, STAGES * dof);
     for (i, row) in coupling.iter().enumerate() {
+        let mut of_start = from_start.columns_mut(i * dof, dof);
         for (j, whole) in row.iter().enumerate() {
             let (stiffness, damping) = (whole.columns(0, dof), whole.columns(dof, dof));
-            let mut rows = right.rows_mut(i * dof, dof);
-            rows -= stiffness * (x + v * (step * stepper.nodes[j])) + damping * v;
+            let mut on_rates = of_start.rows_mut(dof, dof);
+            on_rates += (stiffness * (step * stepper.nodes[j]) + damping).transpose();
+            let mut on_places = of_start.rows_mut(0, dof);
+            on_places += stiffness.transpose();
             for k in 0..STAGES {
                 let mut block = matrix.view_mut((i * dof, k * dof), (dof, dof));
                 block += stiffness * (step * step * stepper.twice[j][k])
@@ -323,38 +365,6 @@ fn carry(
         let mut block = matrix.view_mut((i * dof, i * dof), (dof, dof));
         block += &equations[i].mass;
     }
-    let stages = matrix.lu().solve(&right)?;
-    let stage = |k: usize| stages.rows(k * dof, dof);
-    let at_stage: Vec<DMatrix<f64>> = (0..STAGES)
-        .map(|j| {
-            let (mut moved, mut rates) = (x + v * (step * stepper.nodes[j]), v.into_owned());
-            for k in 0..STAGES {
-                moved += stage(k) * (step * step * stepper.twice[j][k]);
-                rates += stage(k) * (step * stepper.once[j][k]);
-            }
-            stacked(&moved, &rates)
-        })
-        .collect();
-    let (mut moved, mut rates) = (x + v * step, v.into_owned());
-    for k in 0..STAGES {
-        moved += stage(k) * (step * step * stepper.end_twice[k]);
-        rates += stage(k) * (step * stepper.weights[k]);
-    }
-    let mut lags = state.lags.clone();
-    let mut first = 0;
-    for place in places {
-        let inputs: Vec<DMatrix<f64>> =
-            place.inputs.iter().zip(&at_stage).map(|(c, motion)| c * motion).collect();
-        for (k, lag) in place.lags.iter().enumerate() {
-            let mut row = lags.row_mut(first + k);
-            row *= lag.end_start;
-            for (j, input) in inputs.iter().enumerate() {
-                for (c, share) in lag.input.iter().enumerate() {
-                    row += input.row(c) * (lag.end_drive[j] * share);
-                }
-            }
-        }
-        first += place.lags.len();
-    }
-    Some(State { motion: stacked(&moved, &rates), lags })
+    right.gemm(-1.0, &state.motion, &from_start, 1.0);
+    Some(matrix.lu().solve(&right.transpose())?.transpose())
 }

@@ -74,6 +74,21 @@ impl Case {
         self.scales().tip_speed_m_s() / self.aerodynamics.speed_of_sound_m_s
     }
 
+    /// What a rotor at rest in trim, and its T, depend on; all else is as in a case that says nothing. Cases that are equal in
+    /// this share both.
+    pub fn of_rotor(&self) -> Self {
+        let ControlValues { harmonics, t_step_deg, t_inflow, .. } = self.control.clone();
+        Self {
+            title: String::new(),
+            actuator: ActuatorValues::default(),
+            control: ControlValues { harmonics, t_step_deg, t_inflow, ..ControlValues::default() },
+            flight: None,
+            measured: MeasuredFiles::default(),
+            uncertain: vec![],
+            ..self.clone()
+        }
+    }
+
     /// Step of the T matrix, V.
     pub fn t_step_volt(&self) -> f64 {
         let control = &self.control;

@@ -41,17 +41,20 @@ pub struct TrimmedRotor {
     harmonics: Vec<usize>,
     /// Linearised with the inflow settled, and with the wake frozen.
     linearised: Once<[FlapAuthority; 2]>,
+    stability: Once<Stability>,
     wake: Option<Arc<WakeTrim>>,
 }
 
 impl TrimmedRotor {
     /// Builds the rotor of a case and trims it with its flaps at rest, from a nearby trim if there
-    /// is one.
+    /// is one. Only [`Case::of_rotor`] enters.
     ///
     /// # Errors
     /// [`StudyError::Blade`], [`StudyError::Response`] and [`StudyError::Trim`], with the field of the case
     /// that asked for it.
     pub fn new(case: &Case, start: Option<&TrimSolution>) -> Result<Self, StudyError> {
+        // so that nothing else can enter
+        let case = &case.of_rotor();
         let solver = Self::solver_of(case, case.response_tolerances())?;
         Self::trimmed(case, solver, start, None, (0..=HARMONICS).collect())
     }
@@ -63,6 +66,7 @@ impl TrimmedRotor {
     /// # Errors
     /// As [`Self::new`].
     pub fn near(case: &Case, other: &Self) -> Result<Self, StudyError> {
+        let case = &case.of_rotor();
         let tolerances =
             ResponseTolerances { linear: ROUGHLY_LINEAR, ..case.response_tolerances() };
         let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
@@ -102,6 +106,7 @@ impl TrimmedRotor {
             hinge_response: Once::default(),
             harmonics,
             linearised: Once::default(),
+            stability: Once::default(),
             wake,
         })
     }
@@ -252,8 +257,8 @@ impl TrimmedRotor {
     ///
     /// # Errors
     /// As [`RotorSolver::stability`].
-    pub fn stability(&self) -> Result<Stability, ResponseError> {
-        self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor)
+    pub fn stability(&self) -> Result<&Stability, ResponseError> {
+        found(&self.stability, || self.solver.stability(&self.flaps_at_rest(), &self.trim.rotor))
     }
 
     /// State space of one blade about the trim, flaps at rest, the inflow held.

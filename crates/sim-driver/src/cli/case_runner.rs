@@ -12,11 +12,19 @@ use crate::sweep::{continued_trim, refuse_diverged};
 use case_sweep::{Cell, Found, NoNumbers, ReadCase, Runner};
 use measured_data::DataError;
 use rotor_base::RotorScales;
-use rotor_study::{HubLoads, WakeStatus};
-use std::collections::BTreeMap;
+use rotor_study::case::Case;
+use rotor_study::{CurveComparison, HubLoads, TrimmedRotor, WakeStatus};
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Runs the cases of a sweep. Bench data are read and identified once for all cases.
+/// Rotors that are kept though no running case has them.
+const IDLE_ROTORS: usize = 2;
+
+/// Where cases of one rotor find it, once one of them has trimmed it.
+type SharedRotor = Arc<Mutex<Option<TrimmedRotor>>>;
+
+/// Runs the cases of a sweep. Bench data are read and identified once for all cases; cases of one rotor share its trim and its
+/// linearised T.
 #[derive(Debug)]
 pub(super) struct CaseRunner {
     folder: Folder,
@@ -24,6 +32,8 @@ pub(super) struct CaseRunner {
     hashes: Mutex<BTreeMap<String, String>>,
     /// Actuators by folder of their bench data.
     actuators: Mutex<BTreeMap<String, Arc<BenchActuator>>>,
+    /// Rotors in trim, the latest first, by what they depend on.
+    rotors: Mutex<VecDeque<(String, SharedRotor)>>,
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -33,15 +43,20 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 impl CaseRunner {
     /// A runner of cases whose paths are relative to `folder`.
     pub(super) fn new(folder: Folder) -> Self {
-        Self { folder, hashes: Mutex::default(), actuators: Mutex::default() }
+        Self {
+            folder,
+            hashes: Mutex::default(),
+            actuators: Mutex::default(),
+            rotors: Mutex::default(),
+        }
     }
 
     /// A case printed anew, with its defaults.
     ///
     /// # Errors
     /// A value that RON cannot express.
-    pub(super) fn canonical(loaded: &LoadedCase) -> Result<String, Problem> {
-        ron_text(&loaded.case).map_err(|error| {
+    pub(super) fn canonical(case: &Case) -> Result<String, Problem> {
+        ron_text(case).map_err(|error| {
             let message = format!("cannot be written as a case: {error}");
             Problem::new(Place::file("case"), Fault::Refused { message })
         })
@@ -87,10 +102,34 @@ impl CaseRunner {
         Ok(Some(found))
     }
 
+    /// Where the cases of this rotor find it.
+    fn shared(&self, loaded: &LoadedCase) -> Result<SharedRotor, SimError> {
+        let of_rotor = Self::canonical(&loaded.case.of_rotor())?;
+        let key = format!("{of_rotor}{:?}", loaded.table_hashes()?);
+        let mut rotors = lock(&self.rotors);
+        let known = rotors.iter().position(|(known, _)| *known == key);
+        let (key, place) = known.and_then(|at| rotors.remove(at)).unwrap_or((key, Arc::default()));
+        let mut idle = 0;
+        rotors.retain(|(_, place)| {
+            idle += usize::from(Arc::strong_count(place) == 1);
+            idle <= IDLE_ROTORS || Arc::strong_count(place) > 1
+        });
+        rotors.push_front((key, place.clone()));
+        Ok(place)
+    }
+
     fn found(&self, loaded: &LoadedCase) -> Result<Found, SimError> {
         let bench = self.bench(loaded)?;
         let actuators = actuators_with(loaded, bench.as_deref())?;
-        let trimmed = continued_trim(loaded, None)?;
+        let shared = self.shared(loaded)?;
+        let trimmed = {
+            // a second case waits; a trim that fails is tried again, for the fault names the case
+            let mut kept = lock(&shared);
+            match kept.as_ref() {
+                Some(trimmed) => trimmed.clone(),
+                None => kept.insert(continued_trim(loaded, None)?).clone(),
+            }
+        };
         let outcome = run_trimmed(loaded, actuators, trimmed, &Progress::hidden())?;
         refuse_diverged(loaded, outcome.trimmed.wake_diverged())?;
         Ok(found_of(outcome.figures(), loaded))
@@ -125,7 +164,7 @@ impl Runner for CaseRunner {
         let source = Source { name: "case".to_owned(), text: text.to_owned() };
         let loaded = read_case(&source, &self.folder)?;
         let inputs = self.inputs(&loaded)?;
-        Ok(ReadCase { canonical: Self::canonical(&loaded)?, inputs, case: loaded })
+        Ok(ReadCase { canonical: Self::canonical(&loaded.case)?, inputs, case: loaded })
     }
 
     fn unit(&self, loaded: &LoadedCase, field: &str) -> Option<String> {
@@ -171,7 +210,30 @@ fn control_columns(line: &ControlLine, scales: &RotorScales) -> Vec<(String, Cel
     columns.into_iter().map(|(name, cell)| (format!("{prefix}{name}"), cell)).collect()
 }
 
-/// The columns of a result: trim, residuals, power, mean loads, loads without control, and every control.
+/// Columns of a measured curve: agreement of its harmonics from 1/rev and from 2/rev on, means left out, distance with means, and
+/// what is above the listed harmonics on both sides of the disk.
+fn measured_columns(line: &CurveComparison) -> Vec<(String, Cell)> {
+    let station = line.station_r.map_or_else(String::new, |r| format!("_r{r}").replace('.', "p"));
+    let name = line.quantity.name();
+    let last = line.last_harmonic;
+    let mut columns = vec![(format!("measured_{name}{station}_distance"), line.distance.into())];
+    for (first, of) in [(1, line.from_1), (2, line.from_2)] {
+        let start = format!("measured_{name}{station}_{first}_to_{last}_per_rev_");
+        columns.push((format!("{start}correlation"), of.correlation.into()));
+        columns.push((format!("{start}rms"), of.rms.into()));
+    }
+    for (side, peak) in ["advancing", "retreating"].iter().zip(&line.computed_band) {
+        let start = format!("{name}{station}_{side}_band_");
+        let size = peak.as_ref().map(|peak| peak.peak_to_peak);
+        columns.push((format!("{start}peak_to_peak"), size.into()));
+        let azimuth_deg = peak.as_ref().map(|peak| peak.azimuth_deg);
+        columns.push((format!("{start}azimuth_deg"), azimuth_deg.into()));
+    }
+    columns
+}
+
+/// The columns of a result: trim, residuals, power, mean loads, loads without control, agreement with what was
+/// measured, and every control.
 fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
     let (t, r) = (&figures.trim, &figures.residuals);
     let loads = figures.mean_loads.as_ref();
@@ -201,6 +263,11 @@ fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
     let means = HubLoads::NAMES.iter().zip(units).zip(means.flatten());
     columns.extend(means.map(|((name, unit), mean)| (format!("{name}_mean_{unit}"), mean.into())));
     columns.extend(load_columns("", &figures.baseline.hub_nb_per_rev, scales));
+    columns.extend(figures.measured.iter().flat_map(measured_columns));
+    let vortices = figures.vortices.map(|found| found.vertical_percent_r);
+    columns.extend(
+        vortices.map(|rms| ("measured_vortices_vertical_percent_r".to_owned(), rms.into())),
+    );
     columns.extend(figures.control.iter().flat_map(|line| control_columns(line, scales)));
     columns
 }
@@ -209,6 +276,7 @@ fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
 mod tests {
     use super::*;
     use crate::case::{ActuatorChoice, BenchFolder, PAPER_CASE, shipped_case};
+    use rotor_study::case::{ControlActuator, ControllerChoice, EffortChoice};
 
     /// Bench data that go after they were hashed are no failure of the case: it cannot be read again, which ends the sweep.
     #[test]
@@ -234,5 +302,37 @@ mod tests {
         assert_eq!(runner.read(&text).unwrap().inputs, read.inputs, "the hash is kept");
         runner.bench(&read.case).unwrap_err();
         assert!(runner.read(&text).is_err(), "a lost file is not looked for");
+    }
+
+    /// Cases that differ in control alone share a rotor, and have the numbers that they have alone, bit for bit.
+    #[test]
+    fn neighbours_share_a_trim_and_keep_their_bits() {
+        let mut case = shipped_case(PAPER_CASE).unwrap().case;
+        case.structure.elements = 4;
+        case.structure.modes = [1, 1, 1].into();
+        case.response.span_points_per_piece = 2;
+        case.actuator.model = ActuatorChoice::Ideal;
+        case.control.harmonics = vec![vec![3]];
+        case.control.actuators = vec![ControlActuator::Ideal];
+        let mut weighted = case.clone();
+        weighted.control.load_weights.fz = 4.0;
+        let mut local = case.clone();
+        local.control.controller = ControllerChoice::Local;
+        local.control.effort = EffortChoice::Limits;
+        local.title = "another".to_owned();
+        let mut heavier = case.clone();
+        heavier.rotor.lock_number *= 1.01;
+        let found = |runner: &CaseRunner, case: &Case| {
+            let read = runner.read(&ron_text(case).unwrap()).unwrap();
+            runner.found(&read.case).unwrap()
+        };
+        let anywhere = || CaseRunner::new(Folder::Disk(".".into()));
+        let shared = anywhere();
+        for (case, rotors) in [(&case, 1), (&weighted, 1), (&local, 1), (&heavier, 2)] {
+            let alone = found(&anywhere(), case);
+            let beside = found(&shared, case);
+            assert_eq!(format!("{:?}", beside.columns), format!("{:?}", alone.columns));
+            assert_eq!(lock(&shared.rotors).len(), rotors, "{}", case.title);
+        }
     }
 }

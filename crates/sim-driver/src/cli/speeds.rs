@@ -49,7 +49,7 @@ pub(super) fn run_speeds(
         sampling: Sampling::Grid,
     };
     let runner = SpeedRunner { loaded, out, scope, cases: CaseRunner::new(loaded.folder.clone()) };
-    let planned = plan(&file, CaseRunner::canonical(loaded)?, &runner)?;
+    let planned = plan(&file, CaseRunner::canonical(&loaded.case)?, &runner)?;
     let kept = Store::new(out);
     let cases = || advance_ratios.iter().copied().zip(&planned.cases);
     for (mu, case) in cases() {
@@ -133,7 +133,7 @@ impl Runner for SpeedRunner<'_> {
         let mut inputs = self.cases.inputs(&case)?;
         // what is computed beside the case is part of the result
         inputs.extend(self.scope.names());
-        Ok(ReadCase { canonical: CaseRunner::canonical(&case)?, inputs, case })
+        Ok(ReadCase { canonical: CaseRunner::canonical(&case.case)?, inputs, case })
     }
 
     fn unit(&self, case: &LoadedCase, field: &str) -> Option<String> {

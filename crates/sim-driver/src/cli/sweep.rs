@@ -157,7 +157,7 @@ impl Sweep {
         }
         let base = load_case(Path::new(&folder.display(&file.base)))?;
         let runner = CaseRunner::new(base.folder.clone());
-        let mut text = CaseRunner::canonical(&base)?;
+        let mut text = CaseRunner::canonical(&base.case)?;
         // what follows from the model of the actuator, unless the case states it, follows from that of an axis
         if !base.index.contains(ACTUATORS) {
             text = RonIndex::new("case", &text).without(ACTUATORS).unwrap_or(text);
