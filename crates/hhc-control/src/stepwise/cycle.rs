@@ -3,7 +3,16 @@
 use super::{EstimatorSettings, LoadEstimator, Observed, RelaxedController};
 use crate::{ControlError, OperatingPoint, TMatrix};
 
-/// A [`RelaxedController`] whose T and Z are those of a [`LoadEstimator`].
+/// A [`RelaxedController`] whose T and Z are those of a [`LoadEstimator`], its control turned to and fro.
+///
+/// ```text
+/// u_p = R(a s_p) c_p,    s_p = -1 to the power of the ones in the binary digits of (cycle and p),   p = 1, 2 ... pairs
+/// ```
+/// `c` is the control of the controller, `a` the [`EstimatorSettings::dither_rad`]. A turn keeps the amplitudes; on the circle of a
+/// limit `J` is level to first order, and the loads there tell that part of T which places the optimum. About an optimum that no
+/// limit binds `J` rises by `sin^2 a` times the sum of `|W^(1/2) T_p c_p|^2`. Without voltage there is nothing to turn.
+///
+/// Source: the dual controllers of W. Johnson, NASA TP-1996 (1982). The turn and its signs are this project's.
 #[derive(Debug, Clone)]
 pub struct CycleController {
     estimator: LoadEstimator,

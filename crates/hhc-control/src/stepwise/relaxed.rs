@@ -38,7 +38,7 @@ impl RelaxedSettings {
         }
     }
 
-    /// The step without its limits.
+    /// The step without its limits, of flaps that all act.
     pub fn step(&self) -> RelaxedStep {
         RelaxedStep { rho: self.effort_weight, rate_weight: self.rate_weight, gain: self.gain }
     }
