@@ -108,6 +108,8 @@ pub fn controller_files(
         ("t_code", piece("code")),
         ("t_start", piece("start")),
         ("t_now", piece("now")),
+        ("t_volt", piece("volt").trim().to_owned()),
+        ("t_after", piece("after")),
         ("t_lose_flap", piece("lose_flap")),
         ("constants", constants(spec, known)),
         ("about", prefixed(&about(spec), " * ")),
@@ -200,7 +202,7 @@ fn about(spec: &ControllerSpec) -> Vec<String> {
         ),
         String::new(),
         format!("    loads    Z = harmonics of the hub loads at {} per rev", spec.load_harmonic),
-        "    cost     J = Z'WZ + rho u'u + du'S du,   Z = Z_here + T du".to_owned(),
+        "    cost     J = E(Z'WZ)/q + rho u'u + du'S du,   Z = Z_here + T du,   q: chance that a flap acts".to_owned(),
         "    step     u <- u + min(g, c) ( argmin J over |u_p| <= U_p  -  u )".to_owned(),
         format!(
             "    control  cosine and sine voltage of each flap at {} per rev",
@@ -241,6 +243,7 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
     let mut lines = vec![
         scalar("EFFORT_WEIGHT", settings.effort_weight, "rho, 1/V^2"),
         scalar("RATE_WEIGHT", settings.rate_weight, "s, S = s I, 1/V^2"),
+        scalar("FLAP_SURVIVAL", settings.flap_survival, "q, the chance that a flap acts"),
         scalar("GAIN", settings.gain, "part of the way to the optimum that a step goes"),
         scalar(
             "RATE_LIMIT_VOLT",
@@ -292,6 +295,12 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
                 settings.trend_drift,
                 "of the trend of Z0 in a cycle, part of the loads",
             ),
+            scalar(
+                "DITHER_SIN",
+                settings.dither_rad.sin(),
+                "of the turn of every harmonic to and fro",
+            ),
+            scalar("DITHER_COS", settings.dither_rad.cos(), "of the same"),
             scalar("MEAN_SQUARE_LOAD", scale, "of the loads at the start"),
             scalar("PRIOR_VARIANCE", prior, "of an element of T0 u_full"),
             scalar("START_NOISE_VARIANCE", noise, "of a load"),

@@ -155,8 +155,9 @@ static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linea
 
 /* ---- relaxed step ----------------------------------------------------------------------------- */
 
-/* J = Z'WZ + rho u'u + du'S du;  u <- u + min(g, c) (argmin J in the discs - u), c by the rate. */
-static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outputs[LOADS])
+/* J = E(Z'WZ)/q + rho u'u + du'S du, each flap acting with the chance q = FLAP_SURVIVAL;
+ * u <- u + min(g, c) (argmin J in the discs - u), c by the rate. */
+static void step({{name}}_state *s, double volt[CONTROLS], double t[LOADS][CONTROLS], const double outputs[LOADS])
 {
     double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
     double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2];
@@ -165,16 +166,17 @@ static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outp
         z[i] = s->is_load_lost[i] ? 0.0 : outputs[i];
         for (k = 0; k < CONTROLS; ++k) {
             weighted[i][k] = t[i][k] * (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]);
-            z[i] -= s->is_flap_lost[k / WIDTH] ? 0.0 : t[i][k] * s->control_volt[k];
+            z[i] -= s->is_flap_lost[k / WIDTH] ? 0.0 : t[i][k] * volt[k];
         }
     }
     for (j = 0; j < CONTROLS; ++j) {
         linear[j] = dot(&weighted[0][j], CONTROLS, z, 1, LOADS);
         for (k = 0; k < CONTROLS; ++k) {
-            normal[j][k] = dot(&t[0][j], CONTROLS, &weighted[0][k], CONTROLS, LOADS);
+            normal[j][k] = (j / WIDTH == k / WIDTH ? 1.0 : FLAP_SURVIVAL)
+                * dot(&t[0][j], CONTROLS, &weighted[0][k], CONTROLS, LOADS);
         }
         normal[j][j] += EFFORT_WEIGHT + RATE_WEIGHT;
-        linear[j] -= RATE_WEIGHT * s->control_volt[j];
+        linear[j] -= RATE_WEIGHT * volt[j];
     }
     for (flap = 0; flap < FLAPS; ++flap) {
         for (k = flap * WIDTH; s->is_flap_lost[flap] && k < (flap + 1) * WIDTH; ++k) {
@@ -194,7 +196,7 @@ static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outp
         }
     }
     for (i = 0; i < PAIRS; ++i) {
-        const double *to = &s->target_volt[2 * i], *from = &s->control_volt[2 * i];
+        const double *to = &s->target_volt[2 * i], *from = &volt[2 * i];
         double *largest = &fastest[s->is_flap_lost[2 * i / WIDTH] != 0];
         *largest = fmax(*largest, hypot(to[0] - from[0], to[1] - from[1]));
     }
@@ -203,7 +205,7 @@ static void step({{name}}_state *s, double t[LOADS][CONTROLS], const double outp
         share[i] = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest[i], DBL_MIN));
     }
     for (k = 0; k < CONTROLS; ++k) {
-        s->control_volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (s->target_volt[k] - s->control_volt[k]);
+        volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (s->target_volt[k] - volt[k]);
     }
 }
 
@@ -250,7 +252,8 @@ int {{name}}_cycle({{name}}_state *s, const double loads[LOADS], double advance_
         s->loads[i] = loads[i];
     }
     {{t_now}}
-    step(s, t, z);
+    step(s, {{t_volt}}, t, z);
+    {{t_after}}
     return {{NAME}}_STEPPED;
 }
 

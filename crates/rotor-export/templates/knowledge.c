@@ -9,6 +9,8 @@ static void sensitivity(double t[LOADS][CONTROLS])
         }
     }
 }
+@@ fixed.volt
+s->control_volt
 @@ fixed.now
 sensitivity(t);
 @@ scheduled.code
@@ -32,6 +34,8 @@ static void sensitivity(double t[LOADS][CONTROLS], double advance_ratio)
         }
     }
 }
+@@ scheduled.volt
+s->control_volt
 @@ scheduled.now
 sensitivity(t, advance_ratio);
 @@ adaptive.state
@@ -44,6 +48,9 @@ sensitivity(t, advance_ratio);
     double ceiling, pairs;
     long since_jump;
     double last_volt[{{NAME}}_CONTROLS];
+    /* the control without its turn to and fro, V; cycles so far */
+    double centre_volt[{{NAME}}_CONTROLS];
+    unsigned long cycles;
 @@ adaptive.code
 /* Z = Z0 + T u, theta = (Z0, T u_full, trend), phi = (1, u / u_full, 0), Z0 goes on by its trend: a Kalman filter, update in
  * Joseph's form (W. Johnson, NASA TP-1996, 1982; B. Anderson, J. Moore, Optimal Filtering, 1979). */
@@ -83,8 +90,32 @@ static void start_estimate({{name}}_state *s)
     s->pairs = 0.0;
     s->since_jump = NO_JUMP;
     for (k = 0; k < CONTROLS; ++k) {
-        s->last_volt[k] = 0.0;
+        s->last_volt[k] = s->centre_volt[k] = 0.0;
     }
+    s->cycles = 0;
+}
+
+/* Turns every harmonic to one side or the other, by signs that are orthogonal over the cycles and have no mean, at no more than
+ * the rate. */
+static void dither({{name}}_state *s)
+{
+    int i, k;
+    for (i = 0; i < PAIRS; ++i) {
+        const double *centre = &s->centre_volt[2 * i];
+        double *acting = &s->control_volt[2 * i];
+        unsigned long signs = s->cycles & (unsigned long)(i + 1);
+        double sine = DITHER_SIN, to[2], share;
+        for (; signs != 0; signs >>= 1) {
+            sine = (signs & 1UL) != 0 ? -sine : sine;
+        }
+        to[0] = DITHER_COS * centre[0] - sine * centre[1];
+        to[1] = DITHER_COS * centre[1] + sine * centre[0];
+        share = fmin(RATE_LIMIT_VOLT / fmax(hypot(to[0] - acting[0], to[1] - acting[1]), DBL_MIN), 1.0);
+        for (k = 0; k < 2; ++k) {
+            acting[k] = DITHER_SIN > 0.0 ? acting[k] + share * (to[k] - acting[k]) : centre[k];
+        }
+    }
+    ++s->cycles;
 }
 
 /* Lets Z0 go on by its trend. */
@@ -190,7 +221,8 @@ static void update({{name}}_state *s, const double phi[SIZE], const double innov
     }
 }
 
-/* Takes in the pair of the control that acts and its loads; gives T and the loads of the estimate. */
+/* Takes in the pair of the control that acts and its loads; gives T and the loads of the estimate
+ * at the control without its turn to and fro. */
 static void observe({{name}}_state *s, double t[LOADS][CONTROLS], double z[LOADS])
 {
     double phi[SIZE], innovation[LOADS], y[SIZE], known = 0.0, squares, variance, limit, noise;
@@ -231,7 +263,7 @@ static void observe({{name}}_state *s, double t[LOADS][CONTROLS], double z[LOADS
         z[i] = 0.0;
         for (k = 0; k < CONTROLS; ++k) {
             t[i][k] = 1.0 / FULL_SCALE_VOLT * s->theta[i][k + 1];
-            z[i] += t[i][k] * s->control_volt[k];
+            z[i] += t[i][k] * s->centre_volt[k];
         }
         z[i] += s->theta[i][0];
     }
@@ -253,6 +285,10 @@ static void forget_flap({{name}}_state *s, int flap)
 }
 @@ adaptive.start
 start_estimate(s);
+@@ adaptive.volt
+s->centre_volt
+@@ adaptive.after
+dither(s);
 @@ adaptive.now
 observe(s, t, z);
 @@ adaptive.lose_flap

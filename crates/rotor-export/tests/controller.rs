@@ -57,6 +57,7 @@ fn spec(knowledge: TKnowledge) -> ControllerSpec {
         load_weights: LoadWeights::Diagonal(weights),
         effort_weight: 1e-12,
         rate_weight: 1e-12,
+        flap_survival: 0.9,
         gain: 0.5,
         amplitude_limit_volt: vec![LIMIT_VOLT, 15.0, f64::INFINITY, LIMIT_VOLT],
         rate_limit_volt: 8.0,
@@ -75,9 +76,14 @@ fn spec(knowledge: TKnowledge) -> ControllerSpec {
 }
 
 fn adaptive(noise_share: Option<f64>) -> TKnowledge {
-    let trend_drift = if noise_share.is_some() { 0.0 } else { 0.01 };
-    let settings =
-        EstimatorSettings { noise_share, trend_drift, ..EstimatorSettings::in_flight(85.0) };
+    // one of the two has a trend of Z0 and turns its control to and fro
+    let (trend_drift, dither_rad) = if noise_share.is_some() { (0.0, 0.0) } else { (0.01, 0.1) };
+    let settings = EstimatorSettings {
+        noise_share,
+        trend_drift,
+        dither_rad,
+        ..EstimatorSettings::in_flight(85.0)
+    };
     TKnowledge::Adaptive {
         settings,
         t0: t_at(0.15).turned(1.2, 0.2).unwrap(),
@@ -113,6 +119,14 @@ impl Pilot {
         match self {
             Self::Given(relaxed, _) => relaxed,
             Self::Estimated(cycle) => cycle.controller(),
+        }
+    }
+
+    /// The control that acts.
+    fn control_volt(&self) -> &[f64] {
+        match self {
+            Self::Given(relaxed, _) => relaxed.control_volt(),
+            Self::Estimated(cycle) => cycle.control_volt(),
         }
     }
 
@@ -167,9 +181,8 @@ impl Pilot {
                 }
             }
         }
-        let own = self.controller();
-        let mut line = own.control_volt().to_vec();
-        line.push(f64::from(u8::from(own.is_limited())));
+        let mut line = self.control_volt().to_vec();
+        line.push(f64::from(u8::from(self.controller().is_limited())));
         line.extend(loads);
         line.extend(noise_and_t);
         line
@@ -184,7 +197,7 @@ fn flown(spec: &ControllerSpec, jumps: &[(usize, f64)]) -> (Vec<f64>, Vec<Vec<f6
     for cycle in 0..CYCLES {
         pilot.events(cycle);
         let advance_ratio = 0.15 + 0.15 * (cycle as f64 / 120.0).min(1.0);
-        let mut control = pilot.controller().control_volt().to_vec();
+        let mut control = pilot.control_volt().to_vec();
         if cycle >= FLAP_LOST.1 {
             control[FLAP_LOST.0 * 4..].fill(0.0);
         }

@@ -165,6 +165,7 @@ pub(crate) fn unguided<'a>(
         amplitude_limit_volt: vec![values.amplitude_limit_volt; layout.pairs()],
         rate_limit_volt: values.rate_limit_volt,
         rate_weight: values.rate_weight,
+        flap_survival: 0.01 * values.flap_survival_percent,
         ..RelaxedSettings::of_layout(&layout)
     };
     let own = |(index, own): (usize, &FlapActuator)| {
@@ -243,6 +244,7 @@ pub(crate) fn guidance_of(
             drift: T_DRIFT_OF_ERROR * 0.01 * values.t0_error_percent,
             baseline_drift: 0.01 * values.z0_walk_percent,
             trend_drift: 0.01 * values.z0_trend_percent,
+            dither_rad: values.dither_deg.to_radians(),
             noise_share: (values.noise_notice == Notice::Told).then(|| told_noise(values)),
             ..EstimatorSettings::in_flight(case.control.amplitude_volt)
         }),

@@ -59,7 +59,10 @@ impl Pilot {
 
     /// The control that acts, V.
     pub(crate) fn control_volt(&self) -> &[f64] {
-        self.controller().control_volt()
+        match self {
+            Self::Fixed(relaxed, _) | Self::Scheduled(relaxed, _) => relaxed.control_volt(),
+            Self::Adaptive(cycle) => cycle.control_volt(),
+        }
     }
 
     /// Whether a limit of an amplitude bound in the last step.

@@ -59,6 +59,8 @@ const HALF_WINDOW_S: f64 = 1.5;
 /// `J` along the ramp over what the loop converges to: scheduled and adaptive.
 const SCHEDULED_BAR: f64 = 1.10;
 const ADAPTIVE_BAR: f64 = 1.15;
+/// The same at 2/rev with a T0 that is off by -80 deg.
+const LATE_BAR: f64 = 1.2;
 
 /// `J / J0` about each of the speeds of the ramp over what the loop converges to there.
 fn along(points: &[FlightPoint], converged: &[f64]) -> Vec<f64> {
@@ -82,13 +84,14 @@ fn largest(values: &[f64]) -> f64 {
     values.iter().copied().fold(0.0, f64::max)
 }
 
-/// An estimate that takes T0 for good to a half and lets Z0 walk and have a trend.
+/// An estimate that takes T0 for good to a half, lets Z0 walk and have a trend, and turns the control to and fro.
 fn follows_ramps() -> EstimatorSettings {
     EstimatorSettings {
         uncertainty: 0.5,
         drift: 0.25,
-        baseline_drift: 0.2,
-        trend_drift: 0.02,
+        baseline_drift: 0.1,
+        trend_drift: 0.05,
+        dither_rad: 3.0_f64.to_radians(),
         ..EstimatorSettings::in_flight(70.0)
     }
 }
@@ -97,7 +100,7 @@ fn follows_ramps() -> EstimatorSettings {
 fn with_t_off<'a>(flight: &Flight<'a>, phase_deg: f64) -> Flight<'a> {
     let own = flight.identify(flight.state_at(0.0)).unwrap();
     let set = HandedSet {
-        harmonics: vec![3],
+        harmonics: flight.layout.harmonics().iter().map(|&n| n as usize).collect(),
         advance_ratios: vec![flight.state_at(0.0).advance_ratio],
         columns: vec![own.turned(1.0, phase_deg.to_radians()).unwrap().columns()],
     };
@@ -144,29 +147,122 @@ fn a_ramp_is_followed() {
     assert!(largest(&no_trend.0) > ADAPTIVE_BAR, "{no_trend:?}");
 }
 
-/// At 2/rev, where T changes most with speed, the T of 0.15 held misses the bar, a scheduled one does not. An estimated one gains
-/// nothing: amplitudes are at their limits, and what a control does not move is not learnt.
+/// At 2/rev, where T changes most with speed and both amplitudes are at their limits, the T of 0.15 held misses the bar. A
+/// scheduled one does not, nor does an estimated one under 20 draws of the noise, right at the start or off by 80 deg; the other way
+/// it takes longer. Without the turn to and fro what a control does not move is not learnt.
 #[test]
-fn t_is_scheduled_where_it_changes_most() {
+fn t_is_learnt_where_it_changes_most() {
     let (path, model) = (RotorPath::new(&Case::default(), &KNOTS).unwrap(), actuator());
     let mut flight = flight(&path, &model);
     flight.layout = ControlLayout::new(2, vec![2]).unwrap();
     let converged = converged(&flight);
-    let worst = |guidance: &Guidance, seeds: u64| {
+    let each = |flight: &Flight<'_>, guidance: &Guidance, seeds: u64| -> Vec<f64> {
         let of = |seed| fly(&Flight { seed, ..flight.clone() }, guidance).unwrap();
-        largest(&(0..seeds).map(|k| largest(&along(&of(k), &converged))).collect::<Vec<f64>>())
+        (0..seeds).map(|seed| largest(&along(&of(seed), &converged))).collect()
     };
-    let (fixed, scheduled) = (worst(&Guidance::Fixed, 3), worst(&Guidance::Scheduled, SEEDS));
-    let adaptive = worst(&Guidance::Adaptive(follows_ramps()), 3);
-    println!(
-        "2/rev, {converged:.3?}: fixed {fixed:.3}, scheduled {scheduled:.3}, adaptive {adaptive:.3}"
-    );
+    let fixed = largest(&each(&flight, &Guidance::Fixed, 3));
+    let scheduled = largest(&each(&flight, &Guidance::Scheduled, SEEDS));
+    println!("2/rev, {converged:.3?}: fixed {fixed:.3}, scheduled {scheduled:.3}");
     assert!(scheduled < SCHEDULED_BAR && fixed > ADAPTIVE_BAR, "{scheduled} {fixed}");
+    for (phase_deg, bar) in [(0.0, ADAPTIVE_BAR), (80.0, ADAPTIVE_BAR), (-80.0, LATE_BAR)] {
+        let off = with_t_off(&flight, phase_deg);
+        let adaptive = largest(&each(&off, &Guidance::Adaptive(follows_ramps()), SEEDS));
+        println!("2/rev, T off by {phase_deg} deg: adaptive {adaptive:.3}");
+        assert!(adaptive < bar, "{phase_deg}: {adaptive}");
+        let at_rest = EstimatorSettings { dither_rad: 0.0, ..follows_ramps() };
+        let at_rest = largest(&each(&off, &Guidance::Adaptive(at_rest), SEEDS));
+        println!("2/rev, T off by {phase_deg} deg, no turn: adaptive {at_rest:.3}");
+        assert!(phase_deg > 0.0 || at_rest > bar, "{phase_deg}: {at_rest}");
+    }
+}
+
+/// At 4/rev, where the flaps work against each other, an estimated T follows too.
+#[test]
+fn a_ramp_is_followed_where_flaps_oppose_each_other() {
+    let (path, model) = (RotorPath::new(&Case::default(), &KNOTS).unwrap(), actuator());
+    let mut flight = flight(&path, &model);
+    flight.layout = ControlLayout::new(2, vec![4]).unwrap();
+    let converged = converged(&flight);
+    let worst = |guidance: &Guidance| {
+        let of = |seed| fly(&Flight { seed, ..flight.clone() }, guidance).unwrap();
+        largest(&(0..SEEDS).map(|k| largest(&along(&of(k), &converged))).collect::<Vec<f64>>())
+    };
+    let scheduled = worst(&Guidance::Scheduled);
+    let adaptive = worst(&Guidance::Adaptive(follows_ramps()));
+    println!("4/rev, {converged:.3?}: scheduled {scheduled:.3}, adaptive {adaptive:.3}");
+    assert!(scheduled < SCHEDULED_BAR && adaptive < ADAPTIVE_BAR, "{scheduled} {adaptive}");
+}
+
+/// The same flight with 2 to 5/rev at once and up to 20 V each.
+fn at_once<'a>(flight: &Flight<'a>, gain: f64) -> Flight<'a> {
+    let layout = ControlLayout::new(2, vec![2, 3, 4, 5]).unwrap();
+    let settings = RelaxedSettings {
+        gain,
+        amplitude_limit_volt: vec![20.0; layout.pairs()],
+        rate_limit_volt: 10.0,
+        ..RelaxedSettings::of_layout(&layout)
+    };
+    Flight { layout, settings, ..flight.clone() }
+}
+
+/// An estimate that takes T0 for good to a tenth; Z0 walks and has a trend that may change.
+fn knows_t0(trend_drift: f64) -> EstimatorSettings {
+    EstimatorSettings {
+        uncertainty: 0.1,
+        drift: 0.05,
+        baseline_drift: 0.1,
+        trend_drift,
+        ..EstimatorSettings::in_flight(85.0)
+    }
+}
+
+/// 2 to 5/rev at once with up to 20 V each, as the shipped flight has them: `g = 0.7`, T0 good to a tenth. With `g = 0.5` the loop
+/// is too slow for the bar of a T that is known.
+#[test]
+fn a_ramp_is_followed_at_four_harmonics_at_once() {
+    let (path, model) = (RotorPath::new(&Case::default(), &KNOTS).unwrap(), actuator());
+    let one = flight(&path, &model);
+    let (flight, slow) = (at_once(&one, 0.7), at_once(&one, 0.5));
+    let converged = converged(&flight);
+    let worst = |flight: &Flight<'_>, guidance: &Guidance| {
+        let of = |seed| fly(&Flight { seed, ..flight.clone() }, guidance).unwrap();
+        largest(&(0..SEEDS).map(|k| largest(&along(&of(k), &converged))).collect::<Vec<f64>>())
+    };
+    let scheduled = worst(&flight, &Guidance::Scheduled);
+    let adaptive = worst(&flight, &Guidance::Adaptive(knows_t0(0.05)));
+    let no_trend = worst(&flight, &Guidance::Adaptive(knows_t0(0.0)));
+    let slow = worst(&slow, &Guidance::Scheduled);
+    println!(
+        "2 to 5/rev, {converged:.3?}: scheduled {scheduled:.3}, {slow:.3} with a gain of 0.5; adaptive {adaptive:.3}, {no_trend:.3} without a trend"
+    );
+    assert!(scheduled < SCHEDULED_BAR && slow > SCHEDULED_BAR, "{scheduled} {slow}");
+    assert!(adaptive < ADAPTIVE_BAR && no_trend > ADAPTIVE_BAR, "{adaptive} {no_trend}");
 }
 
 /// Amplitude limit at which no flap that fails raises `J` beyond 1.2 `J0`, and one at which it does, V.
-const SAFE_VOLT: f64 = 60.0;
+const SAFE_VOLT: f64 = 50.0;
 const FULL_VOLT: f64 = 70.0;
+
+/// When a flap fails, s: at the end of a cycle, so that the whole window of the next one sees it before anything can answer.
+const FAILS_S: f64 = 15.05;
+/// A flight on which a flap stops.
+fn failing(
+    flight: &Flight<'_>,
+    guidance: &Guidance,
+    flap: usize,
+    time_s: f64,
+    is_told: bool,
+) -> Vec<FlightPoint> {
+    let failure = Some(FlapFailure {
+        flap,
+        time_s,
+        stuck_deg: 0.0,
+        kept_share: 0.0,
+        is_told,
+        is_on_one_blade: false,
+    });
+    fly(&Flight { failure, ..flight.clone() }, guidance).unwrap()
+}
 
 /// A flight within a limit of the amplitudes, under a draw of the noise.
 fn within<'a>(flight: &Flight<'a>, limit_volt: f64, seed: u64) -> Flight<'a> {
@@ -175,24 +271,13 @@ fn within<'a>(flight: &Flight<'a>, limit_volt: f64, seed: u64) -> Flight<'a> {
     flight
 }
 
-/// One flap dead at 15 s, told or not, under 20 draws of the noise, the T of the start right or off by 80 deg: `J` never above
+/// One flap dead from 15 s on, told or not, under 20 draws of the noise, the T of the start right or off by 80 deg: `J` never above
 /// 1.2 `J0` within the safe limit, and at the end where the other flap alone gets it. A T that is off and held fails.
 #[test]
 fn a_failure_is_taken_up() {
     let (path, model) = (RotorPath::new(&Case::default(), &[0.30]).unwrap(), actuator());
     let level = Flight { advance_ratio: vec![(0.0, 0.30)], ..flight(&path, &model) };
     let adaptive = Guidance::Adaptive(follows_ramps());
-    let failing = |flight: &Flight<'_>, guidance: &Guidance, flap, time_s: f64, is_told| {
-        let failure = Some(FlapFailure {
-            flap,
-            time_s,
-            stuck_deg: 0.0,
-            kept_share: 0.0,
-            is_told,
-            is_on_one_blade: false,
-        });
-        fly(&Flight { failure, ..flight.clone() }, guidance).unwrap()
-    };
     let mut held_fails = 0_usize;
     for flap in [0, 1] {
         let safe = within(&level, SAFE_VOLT, 1);
@@ -204,7 +289,7 @@ fn a_failure_is_taken_up() {
             // highest J once T could be learnt, J at the end above what is best, from 20 s after the failure on, J before it
             let found = |guidance: &Guidance, seed: u64| {
                 let flight = within(&off, SAFE_VOLT, seed);
-                let points = failing(&flight, guidance, flap, 15.0, is_told);
+                let points = failing(&flight, guidance, flap, FAILS_S, is_told);
                 let before = mean(&points, 10.0, 15.0);
                 (peak(&points, 5.0), mean(&points, 35.0, 41.0) - alone, before)
             };
@@ -224,10 +309,51 @@ fn a_failure_is_taken_up() {
     }
     println!("T held fails in {held_fails} of the 8 cases in which it is off");
     assert!(held_fails >= 4, "{held_fails}");
-    let full = within(&level, FULL_VOLT, 1);
-    let beyond = peak(&failing(&full, &adaptive, 1, 15.0, true), 15.0);
-    println!("peak with up to {FULL_VOLT} V: {beyond:.3}");
-    assert!(beyond > 1.2, "{beyond}");
+    // no guidance comes before the cycle of the failure: only a lower amplitude or a control that counts on it does
+    for limit_volt in [20.0, 40.0, 45.0, SAFE_VOLT, 55.0, 60.0, FULL_VOLT, 85.0] {
+        let of = |q: f64| {
+            let mut still = Flight { noise_share: 0.0, ..within(&level, limit_volt, 1) };
+            still.settings.flap_survival = q;
+            let points = failing(&still, &Guidance::Fixed, 1, FAILS_S, true);
+            (mean(&points, 10.0, 15.0), peak(&points, FAILS_S))
+        };
+        let each = [1.0, 0.9, 0.8, 0.7, 0.6].map(of);
+        println!("{limit_volt} V, q 1 to 0.6: J/J0 before and highest {each:.3?}");
+        assert!(limit_volt < FULL_VOLT || each[0].1 > 1.2, "{each:?}");
+    }
+}
+
+/// 2 to 5/rev at once, advance ratio 0.15: flaps lean on each other, and one that fails brings more than 2 `J0` whatever is known of T,
+/// for that `J` is of the control before. A control that counts on flaps that may fail stays below 1.2 `J0`, told or not, under
+/// 20 draws of the noise, for three points of `J0`.
+#[test]
+fn a_control_that_counts_on_failures_bears_them() {
+    let (path, model) = (RotorPath::new(&Case::default(), &[0.15]).unwrap(), actuator());
+    let level = at_once(&Flight { advance_ratio: vec![(0.0, 0.15)], ..flight(&path, &model) }, 0.7);
+    let adaptive = Guidance::Adaptive(knows_t0(0.05));
+    // J before the failure, and the highest after it, of both flaps
+    let found = |flight: &Flight<'_>, q: f64, guidance: &Guidance, is_told| {
+        let mut flight = flight.clone();
+        flight.settings.flap_survival = q;
+        let each = [0, 1].map(|flap| failing(&flight, guidance, flap, FAILS_S, is_told));
+        let highest = each.iter().map(|points| peak(points, FAILS_S)).fold(0.0, f64::max);
+        (mean(&each[0], 10.0, FAILS_S), highest)
+    };
+    let still = Flight { noise_share: 0.0, ..level.clone() };
+    let before = found(&still, 1.0, &Guidance::Fixed, true).0;
+    for guidance in [Guidance::Fixed, Guidance::Scheduled, adaptive.clone()] {
+        let highest = found(&still, 1.0, &guidance, true).1;
+        println!("{before:.3} before, {highest:.3} highest");
+        assert!(highest > 2.0, "{highest}");
+    }
+    for is_told in [true, false] {
+        let each = (0..SEEDS)
+            .map(|seed| found(&Flight { seed, ..level.clone() }, 0.9, &adaptive, is_told));
+        let (own, highest) =
+            each.fold((0.0_f64, 0.0_f64), |worst, own| (worst.0.max(own.0), worst.1.max(own.1)));
+        println!("told {is_told}: {own:.3} at most before, {highest:.3} highest");
+        assert!(highest < 1.2 && own < before + 0.03, "{is_told}: {own} {highest}");
+    }
 }
 
 /// Flights that cannot be are refused.

@@ -23,6 +23,9 @@ pub struct EstimatorSettings {
     pub trend_drift: f64,
     /// Whether an innovation beyond all noise frees Z0, and T too where another follows soon.
     pub tests_jumps: bool,
+    /// Angle by which a [`super::CycleController`] turns every harmonic of the control to and fro, rad, 0 to 0.5: the excitation
+    /// by which T is learnt where limits hold the control. Zero for none.
+    pub dither_rad: f64,
 }
 
 impl EstimatorSettings {
@@ -37,6 +40,7 @@ impl EstimatorSettings {
             baseline_drift: 0.01,
             trend_drift: 0.0,
             tests_jumps: true,
+            dither_rad: 0.0,
         }
     }
 
@@ -51,6 +55,7 @@ impl EstimatorSettings {
             baseline_drift: 1e-7,
             trend_drift: 0.0,
             tests_jumps: false,
+            dither_rad: 0.0,
         }
     }
 
@@ -61,6 +66,8 @@ impl EstimatorSettings {
         }
         error::check_positive("uncertainty of T0", self.uncertainty)?;
         error::check_not_negative("drift of T", self.drift)?;
+        let (what, turn) = ("turn of the dither (rad)", self.dither_rad);
+        error::check_range((0.0..=0.5).contains(&turn), what, turn, "0 to 0.5, 0 for none")?;
         error::check_not_negative("drift of the trend of Z0", self.trend_drift)?;
         error::check_positive("drift of Z0", self.baseline_drift)
     }

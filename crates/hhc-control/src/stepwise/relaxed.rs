@@ -14,6 +14,8 @@ pub struct RelaxedSettings {
     pub effort_weight: f64,
     /// `s`, `S = s I`, 1/V^2, 0 or above.
     pub rate_weight: f64,
+    /// `q`, the chance that a flap acts, above 0 and at most 1: below 1 the flaps lean less on each other.
+    pub flap_survival: f64,
     /// Part of the way to the optimum that a step goes, above 0 and at most 1.
     pub gain: f64,
     /// Largest voltage amplitude of every pair of the layout, V; infinity for none.
@@ -29,13 +31,14 @@ impl RelaxedSettings {
             load_weights: LoadWeights::Identity,
             effort_weight: 0.0,
             rate_weight: 0.0,
+            flap_survival: 1.0,
             gain: 1.0,
             amplitude_limit_volt: vec![f64::INFINITY; layout.pairs()],
             rate_limit_volt: f64::INFINITY,
         }
     }
 
-    /// The step without its limits.
+    /// The step without its limits, of flaps that all act.
     pub fn step(&self) -> RelaxedStep {
         RelaxedStep { rho: self.effort_weight, rate_weight: self.rate_weight, gain: self.gain }
     }
@@ -44,7 +47,8 @@ impl RelaxedSettings {
 /// One step of control a cycle, from T and the loads.
 ///
 /// ```text
-/// J   = Z'WZ + rho u'u + du' S du,      Z = Z_here + T du
+/// J   = E(Z'WZ)/q + rho u'u + du' S du,   Z = Z_here + T du,   E over which flaps act, each with the chance q:
+///       the blocks of T'WT between two flaps are multiplied by q
 /// u   <-  u_here + min(g, c) ( argmin J  over |u_p| <= U_p  -  u_here ),   c: the largest change is at most the rate
 /// ```
 /// - Without a limit that binds, `du = -g (T'WT + rho I + S)^-1 (T'W Z + rho u)`.
@@ -86,6 +90,14 @@ impl RelaxedController {
         error::check_not_negative("control weight rho (1/V^2)", settings.effort_weight)?;
         error::check_not_negative("rate weight (1/V^2)", settings.rate_weight)?;
         error::check_gain(settings.gain)?;
+        let (what, chance) = ("chance that a flap acts", settings.flap_survival);
+        let is_chance = chance > 0.0 && chance <= 1.0;
+        error::check_range(
+            is_chance,
+            what,
+            chance,
+            "above 0 and at most 1, 1 for flaps that last",
+        )?;
         let limits = &settings.amplitude_limit_volt;
         error::check_length("amplitude limits", limits.len(), layout.pairs())?;
         for &limit in limits.iter().chain([&settings.rate_limit_volt]) {
@@ -179,6 +191,12 @@ impl RelaxedController {
             loads[i] = if is_load_lost[i] { 0.0 } else { loads[i] };
         }
         program.normal.gemm_tr(1.0, t, weighted, 0.0);
+        for (j, mut column) in program.normal.column_iter_mut().enumerate() {
+            for (i, value) in column.iter_mut().enumerate() {
+                let is_of_one = i / controls_of_flap == j / controls_of_flap;
+                *value *= if is_of_one { 1.0 } else { settings.flap_survival };
+            }
+        }
         // J over the next control: Z at zero control of the flaps that move, and the rate about the present one
         for (k, (column, volt)) in t.column_iter().zip(control_volt.iter()).enumerate() {
             if !is_flap_lost[k / controls_of_flap] {
@@ -220,6 +238,11 @@ impl RelaxedController {
     /// The control that acts, volt.
     pub fn control_volt(&self) -> &[f64] {
         &self.control_volt
+    }
+
+    /// Largest change of a harmonic in a step, volt.
+    pub(super) fn rate_limit_volt(&self) -> f64 {
+        self.settings.rate_limit_volt
     }
 
     /// Controls of a flap, positions in the control vector.

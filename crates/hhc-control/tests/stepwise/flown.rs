@@ -106,8 +106,8 @@ fn fly(
     let mut ratios = Vec::with_capacity(cycles);
     for cycle in 0..cycles {
         event(cycle, rotor, &mut flying);
-        let loads = rotor.measured(flying.controller().control_volt());
-        ratios.push(cost(&rotor.truth(flying.controller().control_volt())) / before);
+        let loads = rotor.measured(flying.control_volt());
+        ratios.push(cost(&rotor.truth(flying.control_volt())) / before);
         flying.step(&loads).unwrap();
     }
     (ratios, flying)
@@ -387,7 +387,9 @@ fn a_free_step_is_the_closed_form() {
         RelaxedSettings { gain: 1.1, ..settings.clone() },
         RelaxedSettings { rate_weight: -1.0, ..settings.clone() },
         RelaxedSettings { amplitude_limit_volt: vec![1.0], ..settings.clone() },
-        RelaxedSettings { rate_limit_volt: 0.0, ..settings },
+        RelaxedSettings { rate_limit_volt: 0.0, ..settings.clone() },
+        RelaxedSettings { flap_survival: 0.0, ..settings.clone() },
+        RelaxedSettings { flap_survival: 1.1, ..settings },
     ] {
         assert!(RelaxedController::new(&layout, 12, bad).is_err());
     }

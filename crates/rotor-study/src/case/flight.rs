@@ -88,11 +88,8 @@ section! {
         pub harmonics: Vec<usize> = vec![2, 3, 4, 5], Rule("1 to 10, each once"), "1/rev", "";
         /// Controllers, each flown on its own. `Fixed`: T of the start, held. `Scheduled`: T over the advance
         /// ratio. `Adaptive`: T estimated on the way.
-        pub controllers: Vec<FlightController> = vec![
-            FlightController::Fixed,
-            FlightController::Scheduled,
-            FlightController::Adaptive,
-        ], Rule("each once"), "", "";
+        pub controllers: Vec<FlightController> =
+            vec![FlightController::Fixed, FlightController::Scheduled, FlightController::Adaptive], Rule("each once"), "", "";
         /// Revolutions of a cycle that let the rotor settle.
         pub settling_rev: usize = 1, Count(0, 100), "", "1 is usual";
         /// Revolutions of a cycle that are measured.
@@ -107,15 +104,19 @@ section! {
         /// Weight `s` of the change of the control in a cycle: `s du'du` beside `J`. The square of the largest singular
         /// value of T is its scale, some 1e-12 to 1e-10.
         pub rate_weight: f64 = 0.0, Within(0.0, 1e6), "1/V^2", "0 leaves it out";
+        /// Chance that a flap acts, which the control counts on: below 100 % flaps lean less on each other.
+        pub flap_survival_percent: f64 = 100.0, Within(1.0, 100.0), "%", "90 % where a flap that fails must not shake the hub";
         /// Whether the adaptive controller is told `noise_percent`. `Untold`: it estimates the noise.
         pub noise_notice: Notice = Notice::Untold, Any, "", "";
         /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.
-        pub z0_walk_percent: f64 = 20.0, Within(1e-2, 100.0), "%", "20 % for manoeuvres, 1 % for steady flight";
+        pub z0_walk_percent: f64 = 10.0, Within(1e-2, 100.0), "%", "10 % for manoeuvres, 1 % for steady flight";
         /// Change of the trend of Z0 that it expects, likewise: Z0 goes on by its trend from cycle to cycle.
-        pub z0_trend_percent: f64 = 0.0, Within(0.0, 100.0), "%", "2 % for ramps with a T0 that may be far off, 0 for none";
+        pub z0_trend_percent: f64 = 5.0, Within(0.0, 100.0), "%", "5 % for ramps, 0 for steady flight";
         /// What the adaptive controller takes T0 for at the start: its error over itself. T may change by half of that
         /// over full scale.
         pub t0_error_percent: f64 = 10.0, Within(1e-2, 200.0), "%", "10 % for a T0 of a model that is right, 50 % for one that may be far off";
+        /// Angle by which it turns every voltage harmonic to and fro, so that T is learnt where limits hold the control.
+        pub dither_deg: f64 = 0.0, Within(0.0, 20.0), "deg", "3 deg where the amplitudes are at their limits, 0 for none";
     }
 }
 

@@ -270,10 +270,10 @@ impl<'a> Flights<'a> {
         let settings = RelaxedSettings {
             load_weights: weights,
             effort_weight,
-            rate_weight: 0.0,
             gain: GAIN,
             amplitude_limit_volt: vec![amplitude_volt; plant.layout().pairs()],
             rate_limit_volt: RATE * amplitude_volt,
+            ..RelaxedSettings::of_layout(plant.layout())
         };
         let squares = baseline[..HUB_OUTPUTS].iter().map(|z| z * z).sum::<f64>();
         let rms = (squares / HUB_OUTPUTS as f64).sqrt();

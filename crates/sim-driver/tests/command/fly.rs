@@ -245,6 +245,8 @@ fn flights_that_cannot_be_are_refused() {
         ("z0_walk_percent: 0", ["flight.z0_walk_percent", "expected 0.01 to 100"]),
         ("rate_weight: -1", ["flight.rate_weight", "expected 0 to"]),
         ("noise_notice: Loud", ["flight.noise_notice", "Loud"]),
+        ("dither_deg: 40", ["flight.dither_deg", "expected 0 to 20 deg"]),
+        ("flap_survival_percent: 0", ["flight.flap_survival_percent", "expected 1 to 100 %"]),
         ("failed_flap: (kept_percent: 101)", ["flight.failed_flap.kept_percent", "0 to 100 %"]),
         ("failed_flap: (on: Two)", ["flight.failed_flap.on", "Two"]),
         (
