@@ -9,18 +9,18 @@ use crate::{
 };
 
 /// Plays of the model, the one of no width among them.
-const PLAYS: usize = 40;
+const PLAYS: usize = 64;
 /// Grading of the half-widths: small ones lie closer.
 const GRADING: f64 = 1.5;
 /// Samples a record gives at most; a denser one is thinned.
 const MOST_SAMPLES: usize = 4000;
-/// Weight that keeps numbers finite which no record determines.
-const RIDGE: f64 = 1e-9;
+/// Weight between neighbours: what no loop determines is as beside it.
+const SMOOTHNESS: f64 = 1e-6;
 
 /// Fits a gain and plays to all training records, slow and fast.
 ///
 /// ```text
-/// min  mean_i (offset + sum_k p_k (w_k - u_mid) - y)^2 / spread^2,   p_k >= 0
+/// min  mean_i (offset + sum_k p_k (w_k - u_mid) - y)^2 / spread^2 + smoothness of p,   p_k >= 0
 /// r_k = (k / n)^1.5 a,   k = 0 .. n - 1,   a: half the swing of the commands
 /// ```
 /// Samples weigh alike: of what is left when plays describe an actuator, the noise, each has as much. Half-widths lie
@@ -59,7 +59,9 @@ pub(crate) fn fit(training: &Training<'_>) -> Result<Fitted, PreisachError> {
     }
     for k in 1..=PLAYS {
         program.at_least(vec![(k, 1.0)], 0.0);
-        program.add(&[(k, 1.0)], 0.0, RIDGE);
+    }
+    for k in 2..PLAYS {
+        program.add(&[(k, 1.0), (k + 1, -1.0)], 0.0, SMOOTHNESS);
     }
     let x = program.solve("plays")?;
     // the solver meets the bounds to its tolerance only
