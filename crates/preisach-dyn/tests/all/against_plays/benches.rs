@@ -79,7 +79,11 @@ pub(crate) struct Made {
 type Command = (&'static str, f64, Vec<f64>);
 
 fn sampled(hz: f64, seconds: f64, at: impl Fn(f64) -> f64) -> Vec<f64> {
-    (0_u32..).map(|i| f64::from(i) / hz).take_while(|t| *t <= seconds).map(at).collect()
+    let mut values = Vec::new();
+    while values.len() as f64 / hz <= seconds {
+        values.push(at(values.len() as f64 / hz));
+    }
+    values
 }
 
 fn sine(name: &'static str, hz: f64, [middle, size]: [f64; 2], cycles: f64) -> Command {
@@ -165,7 +169,9 @@ impl Actuator {
             }
         }
         let reversible = draw(0.5, 1.0) * relays.iter().map(|r| r[2]).sum::<f64>();
-        relays.iter_mut().for_each(|r| r[2] /= reversible);
+        for relay in &mut relays {
+            relay[2] /= reversible;
+        }
         let beta = draw(2.0, 4.0);
         Self {
             kind,

@@ -42,7 +42,7 @@ impl Plays {
         let rows = tables
             .iter()
             .flat_map(DMatrix::row_iter)
-            .map(|row| row.into_owned())
+            .map(nalgebra::Matrix::into_owned)
             .collect::<Vec<_>>();
         let a = DMatrix::from_rows(&rows);
         let y = DVector::from_iterator(
