@@ -2,13 +2,15 @@
 //! model out.
 
 use crate::BenchError;
+use crate::diagram::diagram;
+use crate::drift::{DriftKind, without_drift};
 use crate::figures::{density_csv, diagram_csv};
 use crate::identification::dataset_place;
 use crate::reversals::ForcDiagram;
 use crate::stored::{StoredActuator, StoredChannels, StoredKind};
 use measured_data::{Channel, Channels, CurveData};
 use preisach_dyn::forc::{
-    CalibrationPoint, DriftKind, ForcCurve, ForcData, ForcFit, ForcSettings, diagram, fit, held_out,
+    CalibrationPoint, ForcCurve, ForcData, ForcFit, ForcSettings, fit, held_out,
 };
 use preisach_dyn::identify::Settings;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, StaticPreisach};
@@ -53,7 +55,7 @@ pub fn identify_curves(data: &CurveData) -> Result<CurveIdentification, BenchErr
     let drift_corrected = readings.len() == all.len() && !readings.is_empty();
     let calibration = if drift_corrected { readings } else { vec![] };
     let measured = ForcData { curves, calibration };
-    let corrected = measured.without_drift(DriftKind::Gain, DRIFT_HALF_WINDOW).map_err(fail)?;
+    let corrected = without_drift(&measured, DriftKind::Gain, DRIFT_HALF_WINDOW).map_err(fail)?;
     let settings = ForcSettings::default();
     let held_out = held_out(&corrected, &settings, HELD_OUT_EVERY, 1).map_err(fail)?;
     let fit = fit(&corrected, &settings).map_err(fail)?;

@@ -13,10 +13,10 @@
 //! Columns carry their units: V and deg for an actuator, those of the data for a generic loop.
 
 use crate::BenchError;
+use crate::diagram::DiagramPoint;
 use crate::identification::BenchIdentification;
 use crate::reversals::of_records;
 use crate::spectra::{spectra, spectra_csv};
-use preisach_dyn::forc::DiagramPoint;
 use preisach_dyn::{ActuatorLaw, PlayMap, PreisachError, PreisachGrid};
 use rayon::prelude::*;
 use std::fmt::Write;

@@ -8,6 +8,8 @@
 //! | what records show beside one another | [`compared`] |
 //! | what an import says of the records that it wrote | [`ImportReport`] |
 //! | identification from reversal curves | [`curves`] |
+//! | drift of their instrument, taken off | [`drift`] |
+//! | their FORC diagram | [`diagram`](mod@diagram) |
 //! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
 //! | tables of the figures, for any plotting program | [`figures`] |
 //! | reversal curves within records, and their FORC diagram | [`reversals`] |
@@ -17,6 +19,8 @@
 pub mod any_data;
 mod beside;
 pub mod curves;
+pub mod diagram;
+pub mod drift;
 mod error;
 pub mod figures;
 mod glance;

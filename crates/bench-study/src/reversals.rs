@@ -1,6 +1,7 @@
 //! First-order reversal curves within records, and their diagram.
 
-use preisach_dyn::forc::{DiagramPoint, ForcCurve, ForcData, diagram};
+use crate::diagram::{DiagramPoint, diagram};
+use preisach_dyn::forc::{ForcCurve, ForcData};
 use preisach_dyn::identify::BenchRecord;
 
 /// Part of the span of the command within which two turning points are one, and an end of it is reached.

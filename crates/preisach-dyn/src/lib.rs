@@ -14,7 +14,7 @@
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
 //! | what is impossible or unlikely about one | [`ActuatorModel::doubts`] |
 //! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
-//! | reversal curves: density, FORC diagram | [`forc`] |
+//! | reversal curves: density | [`forc`] |
 //! | identification from bench records | [`identify`](mod@identify) |
 //!
 //! Source: S. R. Viswamurthy and R. Ganguli, *Experimental and computational investigation of

@@ -59,7 +59,7 @@ impl BenchIdentification {
             Some(family) => table.rows.iter().find(|row| row.family == family),
             None => table.best(),
         };
-        let Some(ModelRow { family, order, cross_validation, fitted }) = chosen else {
+        let Some(ModelRow { family, order, cross_validation, fitted, .. }) = chosen else {
             return Ok(());
         };
         let fitted = match fitted {

@@ -125,7 +125,7 @@ pub struct BenchIdentification {
 }
 
 /// Models that a comparison fits at most: the families, and the orders of the one chosen.
-pub const MODELS_COMPARED: usize = 15;
+pub const MODELS_COMPARED: usize = 17;
 
 /// Whether all families of models are fitted to the same records, side by side with the identification, and their table
 /// kept.

@@ -1,7 +1,7 @@
 //! The FORC diagram.
 
+use crate::diagram::DiagramPoint;
 use crate::reversals::{FEWEST, ForcDiagram};
-use preisach_dyn::forc::DiagramPoint;
 use report_page::pictures::{HeatMap, short};
 use report_page::{Markup, counted, grid, titled};
 

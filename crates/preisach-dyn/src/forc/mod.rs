@@ -1,7 +1,7 @@
 //! First-order reversal curves: measured curves in, density of a static model out.
 //!
 //! ```text
-//! curves -> drift correction -> Everett map at the nodes of the grid -> density >= 0 -> play map
+//! curves -> Everett map at the nodes of the grid -> density >= 0 -> play map
 //! ```
 //! Every curve begins at its reversal, to which the input fell from positive saturation, and rises.
 //! Inputs and outputs may have any unit (field and moment, voltage and displacement): where this
@@ -12,13 +12,9 @@
 //! particle systems using first order reversal curves*, Journal of Applied Physics 85 (1999);
 //! I. D. Mayergoyz, *Mathematical Models of Hysteresis* (1991), chapter 1, section 2.
 
-mod diagram;
-mod drift;
 mod everett_map;
 mod fit;
 
-pub use diagram::{DiagramPoint, diagram};
-pub use drift::DriftKind;
 pub use fit::{CurveMisfit, ForcFit, ForcSettings, HeldOutCurves, fit, held_out, misfit, outputs};
 
 use crate::PreisachError;

@@ -1,5 +1,6 @@
 //! The actuator: laws, stages, closed orbits, identification.
 
+mod against_plays;
 mod chain;
 mod common;
 mod density;

@@ -1,7 +1,7 @@
 //! The families of models that the same records can be fitted with.
 
 use crate::identify::families::family::{Family, Fitted, Given, Search, share};
-use crate::identify::families::{layered, stop_fit};
+use crate::identify::families::{layered, plays_fit, stop_fit};
 use crate::identify::fit::output_error::{Build, Slopes};
 use crate::identify::fit::preisach::{RateFit, fit_linear};
 use crate::identify::fit::refine::Refined;
@@ -52,7 +52,10 @@ pub(crate) fn fit(
             Ok(Fitted { model: settings.actuator_of(law), parameters })
         }
         Family::PrandtlStop => stop_fit::fit(training),
-        Family::DynamicPreisachCreep => layered::dynamic_creep(training, given),
+        Family::PrandtlPlays => plays_fit::fit(training),
+        Family::StaticPreisachCreep | Family::DynamicPreisachCreep => {
+            layered::creep(family, training, given)
+        }
         Family::StaticPreisachRelaxation => layered::relaxation(training, given),
         _ => by_output_error(family, training, given),
     }

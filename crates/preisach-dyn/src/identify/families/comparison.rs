@@ -68,6 +68,9 @@ pub struct ModelRow {
     /// an amplitude at a time;
     /// none if there were too few to leave one out.
     pub cross_validation: Option<f64>,
+    /// What the noise of those records contributes to it, as a share of their spread; 0 where it is not known. A model that misses
+    /// nothing has this error.
+    pub noise: f64,
     /// The model fitted to all training records, or why there is none.
     pub fitted: Result<FittedModel, PreisachError>,
 }
@@ -133,7 +136,7 @@ impl ModelComparison {
 /// All fast training records of one frequency are left out of the fit in turn and simulated, then all
 /// of one amplitude: conditions, because the model will be used at others than the bench ran. Where no
 /// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a
-/// simpler one if it is within 3 %; then the order of the memory with the smallest error: there
+/// simpler one if it is within 3 %, both after the noise that repeated cycles show is taken off; then the order of the memory with the smallest error: there
 /// smoothness keeps large grids in check. Held-out records are never looked at for choosing: they only
 /// stand in the table. `done` is called after each row.
 ///
@@ -203,12 +206,15 @@ struct Trial {
     errors: Vec<f64>,
 }
 
-/// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it; without
-/// cross-validation the static Preisach model, or what could be fitted at all.
+/// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it, both without
+/// noise; without cross-validation the static Preisach model, or what could be fitted at all.
 fn best(rows: &[ModelRow], within: f64) -> usize {
     let error = |row: &ModelRow| row.fitted.as_ref().ok().and(row.cross_validation);
     let least = rows.iter().filter_map(error).fold(f64::INFINITY, f64::min);
-    let near = rows.iter().position(|row| error(row).is_some_and(|e| e <= within * least));
+    // the squares of misfit and noise add; where noise is all there is, the smallest error stands
+    let excess = |row: &ModelRow, error: f64| error * error - row.noise.min(least).powi(2);
+    let is_near = |row: &ModelRow, e| excess(row, e) <= within * within * excess(row, least);
+    let near = rows.iter().position(|row| error(row).is_some_and(|e| is_near(row, e)));
     let of = |family: Family| move |row: &ModelRow| row.family == family && row.fitted.is_ok();
     near.filter(|_| least.is_finite())
         .or_else(|| rows.iter().position(of(Family::DynamicPreisach)))
@@ -284,6 +290,7 @@ impl<'a> Contest<'a> {
             errors.extend(rest.collect::<Vec<f64>>());
             Trial { whole: whole.clone(), errors }
         });
+        let noise = noise_of(&training.all(), &folds);
         let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
         let cross_validation =
             (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
@@ -294,8 +301,23 @@ impl<'a> Contest<'a> {
             let model = self.bench.rigged(model, &training);
             Ok(FittedModel { model, fits, parameters })
         });
-        Ok((ModelRow { family, order, cross_validation, fitted }, trial))
+        Ok((ModelRow { family, order, cross_validation, noise, fitted }, trial))
     }
+}
+
+/// The error of folds that a model without misfit has: the noise of the records over their spread. Of a record that does not
+/// repeat it is that of the others; 0 where none repeats.
+fn noise_of(all: &[&Prepared], folds: &[Vec<usize>]) -> f64 {
+    let known: Vec<f64> = all.iter().filter_map(|r| r.noise.map(|noise| noise.std_deg)).collect();
+    let Some(usual_deg) = (!known.is_empty()).then(|| mean_square(&known).sqrt()) else {
+        return 0.0;
+    };
+    let square = |&place: &usize| {
+        let record = all[place];
+        (record.noise.map_or(usual_deg, |noise| noise.std_deg) / record.spread_deg).powi(2)
+    };
+    let of = |fold: &Vec<usize>| fold.iter().map(square).sum::<f64>() / fold.len() as f64;
+    (folds.iter().map(of).sum::<f64>() / folds.len().max(1) as f64).sqrt()
 }
 
 /// What is left out of the fast records in turn, as places from `first` on: all records of one

@@ -19,12 +19,16 @@ pub enum Family {
     LinearLag,
     /// Bouc-Wen hysteresis, rate-independent.
     BoucWen,
+    /// Prandtl-Ishlinskii hysteresis, rate-independent: plays of weights that are not negative.
+    PrandtlPlays,
     /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
     PrandtlIshlinskii,
     /// Prandtl-Ishlinskii stops: an output that leads the input.
     PrandtlStop,
     /// Static Preisach.
     StaticPreisach,
+    /// Static Preisach before creep along the logarithm of time.
+    StaticPreisachCreep,
     /// Dynamic Preisach, implicit Euler in time.
     DynamicPreisachFirst,
     /// Dynamic Preisach, second order in time.
@@ -38,13 +42,15 @@ pub enum Family {
 
 impl Family {
     /// All of them, from the simplest.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 12] = [
         Self::Linear,
         Self::LinearLag,
         Self::BoucWen,
+        Self::PrandtlPlays,
         Self::PrandtlIshlinskii,
         Self::PrandtlStop,
         Self::StaticPreisach,
+        Self::StaticPreisachCreep,
         Self::DynamicPreisachFirst,
         Self::DynamicPreisach,
         Self::DynamicPreisachCreep,
@@ -57,9 +63,11 @@ impl Family {
             Self::Linear => "linear gain",
             Self::LinearLag => "linear gain + lag",
             Self::BoucWen => "Bouc-Wen",
+            Self::PrandtlPlays => "Prandtl-Ishlinskii plays",
             Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
             Self::PrandtlStop => "Prandtl-Ishlinskii stops",
             Self::StaticPreisach => "static Preisach",
+            Self::StaticPreisachCreep => "static Preisach + creep",
             Self::DynamicPreisachFirst => "dynamic Preisach, first order",
             Self::DynamicPreisach => "dynamic Preisach, second order",
             Self::DynamicPreisachCreep => "dynamic Preisach + creep",
@@ -71,7 +79,17 @@ impl Family {
 
     /// Whether a fit needs records at several frequencies.
     pub fn needs_rate(self) -> bool {
-        !matches!(self, Self::Linear | Self::BoucWen | Self::PrandtlStop | Self::StaticPreisach)
+        use Family::{DynamicPreisach, DynamicPreisachCreep, DynamicPreisachFirst};
+        use Family::{LinearLag, PrandtlIshlinskii, StaticPreisachRelaxation};
+        matches!(
+            self,
+            LinearLag
+                | PrandtlIshlinskii
+                | DynamicPreisachFirst
+                | DynamicPreisach
+                | DynamicPreisachCreep
+                | StaticPreisachRelaxation
+        )
     }
 }
 

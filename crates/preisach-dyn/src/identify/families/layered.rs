@@ -44,9 +44,10 @@ fn without_stage(record: &BenchRecord, stage: &StageStep) -> BenchRecord {
     record
 }
 
-/// Dynamic Preisach before creep: the rate of creep that fits the training records best, the law
+/// Static or dynamic Preisach before creep: the rate of creep that fits the training records best, the law
 /// fitted to the records with that creep taken off.
-pub(crate) fn dynamic_creep(
+pub(crate) fn creep(
+    family: Family,
     training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
@@ -72,8 +73,15 @@ pub(crate) fn dynamic_creep(
             };
             let own = all.iter().zip(&stripped).map(prepare).collect::<Result<Vec<_>, _>>()?;
             let own = Training::of(&own, grid, settings)?;
-            let fit = RateFit::new(&own, static_fit::as_measured(&own)?, given.uncertainty())?;
-            let Refined { law, parameters, .. } = fit.refined;
+            let map = static_fit::as_measured(&own)?;
+            let (law, parameters) = if family.needs_rate() {
+                let fit = RateFit::new(&own, map, given.uncertainty())?;
+                let Refined { law, parameters, .. } = fit.refined;
+                (law, parameters)
+            } else {
+                let law = StaticPreisach::new(grid, map)?;
+                (ActuatorLaw::StaticPreisach(law), Vec::new())
+            };
             let mut model = settings.actuator_of(law);
             model.linkage.push(creep);
             let squares = all.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
@@ -82,8 +90,7 @@ pub(crate) fn dynamic_creep(
         .collect();
     let tried = tried.into_iter().collect::<Result<Vec<_>, _>>()?;
     let best = tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best });
-    let family = Family::DynamicPreisachCreep.name();
-    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family })
+    best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family: family.name() })
 }
 
 /// Parameters of the stages of [`relaxation`].

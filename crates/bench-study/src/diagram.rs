@@ -1,9 +1,8 @@
 //! The FORC diagram: second mixed derivative by local polynomial smoothing.
 
-use super::{ForcCurve, ForcData};
-use crate::PreisachError;
-use crate::check::check_count;
 use nalgebra::{Matrix6, Vector6};
+use preisach_dyn::PreisachError;
+use preisach_dyn::forc::{ForcCurve, ForcData};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -56,6 +55,13 @@ pub fn diagram(data: &ForcData, smoothing: usize) -> Result<Vec<DiagramPoint>, P
         })
         .collect();
     Ok(rows.into_iter().flatten().collect())
+}
+
+/// Refuses a count that is too small to mean anything.
+fn check_count(quantity: &'static str, value: usize, least: usize) -> Result<(), PreisachError> {
+    let expected = || format!("at least {least}").into();
+    let refused = |value| PreisachError::OutOfRange { quantity, value, expected: expected() };
+    if value >= least { Ok(()) } else { Err(refused(value as f64)) }
 }
 
 /// The diagram at one point; none if its window is not complete.
