@@ -16,8 +16,8 @@ use actuator_gap::{DiagnosisError, NotJudged, judged};
 use measured_data::problem::Place;
 use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Family, Finding, FlapZero, Identification, ModelComparison, RecordUse,
-    RecordWindows, Settings, Subject, compare_models, identify,
+    BenchRecord, Candidates, Family, Finding, FlapZero, Identification, MOST_UNEXPLAINED,
+    ModelComparison, RecordUse, RecordWindows, Settings, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ pub struct BenchIdentification {
 }
 
 /// Models that a comparison fits at most: the families, and the orders of the one chosen.
-pub const MODELS_COMPARED: usize = 15;
+pub const MODELS_COMPARED: usize = 18;
 
 /// Whether all families of models are fitted to the same records, side by side with the identification, and their table
 /// kept.
@@ -251,6 +251,16 @@ fn identified(
     let mut identification = identification.map_err(|e| heading.failed(e))?;
     let findings = &mut identification.summary.findings;
     findings.extend(rests.iter().map(Finding::of_rest).chain(switched_on));
+    let comparison = comparison.map_err(|source| heading.failed(source))?;
+    let explained = |table: &ModelComparison| {
+        let error = table.best().and_then(|row| table.error_over(row, RecordUse::Train));
+        error.is_some_and(|(nrmse, _)| nrmse <= MOST_UNEXPLAINED)
+    };
+    // another model of the table describes the device
+    if comparison.as_ref().is_some_and(explained) {
+        let findings = &mut identification.summary.findings;
+        findings.retain(|finding| !matches!(finding, Finding::NotDescribed { .. }));
+    }
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
@@ -262,7 +272,6 @@ fn identified(
     let model = identification.dynamic.clone();
     let fits = judged(&records, &identification, &model).map_err(|e| heading.misjudged(e))?;
     let pick = Pick::first_fit(&settings);
-    let comparison = comparison.map_err(|source| heading.failed(source))?;
     Ok(BenchIdentification {
         heading,
         identification,

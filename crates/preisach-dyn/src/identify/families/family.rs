@@ -1,5 +1,6 @@
 //! The families of models, the records they are fitted to, and the search for their parameters.
 
+use crate::identify::fit::linear_mode::LinearMode;
 use crate::identify::fit::output_error::{
     Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty, estimates,
 };
@@ -19,12 +20,18 @@ pub enum Family {
     LinearLag,
     /// Bouc-Wen hysteresis, rate-independent.
     BoucWen,
+    /// Bouc-Wen hysteresis before a mode.
+    BoucWenMode,
+    /// An oscillator with Bouc-Wen hysteresis in its spring.
+    HystereticOscillator,
     /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
     PrandtlIshlinskii,
     /// Prandtl-Ishlinskii stops: an output that leads the input.
     PrandtlStop,
     /// Static Preisach.
     StaticPreisach,
+    /// Static Preisach before a mode.
+    StaticPreisachMode,
     /// Dynamic Preisach, implicit Euler in time.
     DynamicPreisachFirst,
     /// Dynamic Preisach, second order in time.
@@ -38,13 +45,16 @@ pub enum Family {
 
 impl Family {
     /// All of them, from the simplest.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Linear,
         Self::LinearLag,
         Self::BoucWen,
+        Self::BoucWenMode,
+        Self::HystereticOscillator,
         Self::PrandtlIshlinskii,
         Self::PrandtlStop,
         Self::StaticPreisach,
+        Self::StaticPreisachMode,
         Self::DynamicPreisachFirst,
         Self::DynamicPreisach,
         Self::DynamicPreisachCreep,
@@ -57,9 +67,12 @@ impl Family {
             Self::Linear => "linear gain",
             Self::LinearLag => "linear gain + lag",
             Self::BoucWen => "Bouc-Wen",
+            Self::BoucWenMode => "Bouc-Wen + mode",
+            Self::HystereticOscillator => "Bouc-Wen oscillator",
             Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
             Self::PrandtlStop => "Prandtl-Ishlinskii stops",
             Self::StaticPreisach => "static Preisach",
+            Self::StaticPreisachMode => "static Preisach + mode",
             Self::DynamicPreisachFirst => "dynamic Preisach, first order",
             Self::DynamicPreisach => "dynamic Preisach, second order",
             Self::DynamicPreisachCreep => "dynamic Preisach + creep",
@@ -71,7 +84,15 @@ impl Family {
 
     /// Whether a fit needs records at several frequencies.
     pub fn needs_rate(self) -> bool {
-        !matches!(self, Self::Linear | Self::BoucWen | Self::PrandtlStop | Self::StaticPreisach)
+        let is_static =
+            matches!(self, Self::Linear | Self::BoucWen | Self::PrandtlStop | Self::StaticPreisach);
+        // a mode around a hysteresis, or behind one of few numbers, shows within one run
+        !is_static && !matches!(self, Self::BoucWenMode | Self::HystereticOscillator)
+    }
+
+    /// Whether a mode is part of it.
+    pub fn has_mode(self) -> bool {
+        matches!(self, Self::BoucWenMode | Self::HystereticOscillator | Self::StaticPreisachMode)
     }
 }
 
@@ -88,6 +109,8 @@ pub(crate) struct Fitted {
 pub(crate) struct Given<'a> {
     /// Smoothness of the rate maps.
     pub(crate) smoothness: f64,
+    /// The linear mode nearest to all training records, where a family with a mode is fitted.
+    pub(crate) mode: Option<&'a LinearMode>,
     /// A model of the family fitted to all training records, if there is one already.
     pub(crate) whole: Option<&'a Fitted>,
 }
