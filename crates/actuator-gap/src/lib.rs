@@ -39,6 +39,8 @@ mod simulator;
 mod surrogate;
 
 pub use actuator_file::at_work::{ActuatorUse, Commanded, Deviation, UseError, UseSample};
+pub use actuator_file::doubts::{Doubt, Weight};
+pub use actuator_file::history_inverse::{HistoryInverse, HistoryInverseSettings, history_inverse};
 pub use actuator_file::{
     GainRule, HarmonicResponse, StoredActuator, StoredChannels, StoredFit, StoredKind,
 };

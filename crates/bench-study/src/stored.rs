@@ -1,12 +1,13 @@
 //! Actuator files: reading with places, writing, and what is unlikely about them.
 
 use crate::BenchError;
+use actuator_gap::{Doubt, Weight};
 pub use actuator_gap::{
     GainRule, HarmonicResponse, StoredActuator, StoredChannels, StoredFit, StoredKind,
 };
 use measured_data::problem::{Fault, Place, Problem, Problems};
 use measured_data::{DataError, RonFile, Source, read_ron, ron_text, write_atomic};
-use preisach_dyn::{ActuatorLaw, Doubt, PreisachError, Weight};
+use preisach_dyn::{ActuatorLaw, PreisachError};
 use std::path::Path;
 
 /// What is unlikely about an actuator, each in a sentence at its place; `place` knows where a field such as

@@ -10,9 +10,9 @@
 //! | static model, paper eq. (2) | [`StaticPreisach`] |
 //! | dynamic model, paper eq. (5) | [`DynamicPreisach`], [`output_rate`] |
 //! | other families | [`PrandtlIshlinskii`], [`BoucWen`]; output ahead of the input: [`PrandtlStop`] |
+//! | hysteresis inside a resonance | [`HystereticOscillator`] |
 //! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
-//! | what is impossible or unlikely about one | [`ActuatorModel::doubts`] |
 //! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
 //! | reversal curves: density | [`forc`] |
 //! | identification from bench records | [`identify`](mod@identify) |
@@ -25,7 +25,6 @@
 mod actuator;
 mod calibration;
 mod check;
-mod doubts;
 mod error;
 pub mod forc;
 pub mod identify;
@@ -38,9 +37,8 @@ pub use actuator::model::{ActuatorModel, TrainedRange};
 pub use actuator::periodic::{PeriodicResponse, PeriodicSettings};
 pub use actuator::simulate::{BenchSimulation, Drive, Simulation};
 pub use calibration::Calibration;
-pub use doubts::{Doubt, Weight};
 pub use error::PreisachError;
-pub use inverse::{HistoryInverse, HistoryInverseSettings, InverseSettings, PeriodicInverse};
+pub use inverse::{InverseSettings, PeriodicInverse};
 pub use laws::bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
 pub use laws::dynamics::{
     DynamicMemory, DynamicParameters, DynamicPreisach, OutputHistory, OutputRate, RateForm,
@@ -51,6 +49,7 @@ pub use laws::grid::{PreisachGrid, VoltageRange};
 pub use laws::hysteresis::{HysteresisLaw, LinearGain, StepCounts};
 pub use laws::law::{ActuatorLaw, LawMemory};
 pub use laws::memory::{PlayMemory, StartState, WidthsMemory};
+pub use laws::oscillator::{HystereticOscillator, OscillatorMemory, OscillatorParameters};
 pub use laws::play_map::PlayMap;
 pub use laws::prandtl::{PrandtlIshlinskii, PrandtlParameters, WeightedPlay};
 pub use laws::statics::StaticPreisach;

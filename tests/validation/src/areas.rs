@@ -341,7 +341,7 @@ pub const AREAS: &[Area] = &[
         heading: "Actuator on data (`preisach-dyn`, `sim-driver`)",
         ids: &[
             "V-ACT-30", "V-ACT-31", "V-ACT-32", "V-ACT-37", "V-ACT-38", "V-ACT-33", "V-ACT-34",
-            "V-ACT-35", "V-ACT-36", "V-ACT-39",
+            "V-ACT-35", "V-ACT-36", "V-ACT-39", "V-ACT-40", "V-ACT-41", "V-ACT-42", "V-ACT-43",
         ],
     },
     Area {

@@ -4,7 +4,7 @@ use crate::common::{linear, prandtl, statics};
 use actuator_export::{ExportError, Target, export, remarks};
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Delay, Depolarisation, DielectricHeating,
-    Lag, LinkageStage, TrainedRange,
+    HystereticOscillator, Lag, LinkageStage, OscillatorParameters, TrainedRange, VoltageRange,
 };
 
 const TARGETS: [Target; 4] = [Target::C, Target::Python, Target::Matlab, Target::Json];
@@ -53,6 +53,25 @@ fn time_steps_that_are_none_are_refused() {
         assert!(matches!(error, ExportError::TimeStep { .. }));
         assert!(error.to_string().contains("positive"));
     }
+}
+
+#[test]
+fn an_oscillator_is_refused_by_name_with_the_remedy() {
+    let law = HystereticOscillator::new(OscillatorParameters {
+        range_volt: VoltageRange::amplified_stack(),
+        gain_deg_per_volt: 0.1,
+        frequency_hz: 150.0,
+        damping_ratio: 0.05,
+        hysteretic_share: 0.3,
+        loading_per_deg: 0.1,
+        unloading_per_deg: 0.1,
+        offset_deg: 0.0,
+    });
+    let law = ActuatorLaw::HystereticOscillator(law.unwrap());
+    let error = refused(&ActuatorModel { law, ..linear() }, "flap", 1e-3);
+    assert!(matches!(error, ExportError::Law { .. }));
+    assert!(error.to_string().contains("Bouc-Wen oscillator"), "{error}");
+    assert!(error.to_string().contains("--model"), "{error}");
 }
 
 #[test]

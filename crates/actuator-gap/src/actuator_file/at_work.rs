@@ -1,9 +1,10 @@
 //! An actuator at work: what it does under a voltage, which voltage a wanted motion takes.
 
+use super::history_inverse::{HistoryInverseSettings, history_inverse};
 use crate::StoredActuator;
 use measured_data::EvenRecord;
 use measured_data::problem::Problem;
-use preisach_dyn::{Drive, HistoryInverseSettings, PreisachError};
+use preisach_dyn::{Drive, PreisachError};
 use serde::Serialize;
 
 const FLAP: &str = "flap_deg";
@@ -198,7 +199,7 @@ impl StoredActuator {
     /// reach stays as error.
     ///
     /// # Errors
-    /// As [`ActuatorModel::history_inverse`](preisach_dyn::ActuatorModel::history_inverse).
+    /// As [`history_inverse`].
     pub fn command_for(
         &self,
         wanted: &[f64],
@@ -210,7 +211,7 @@ impl StoredActuator {
             |value: &f64| if is_displacement { calibration.output_deg(*value) } else { *value };
         let angles: Vec<f64> = wanted.iter().map(angle).collect();
         let settings = HistoryInverseSettings::default();
-        let found = self.model.history_inverse(&angles, step_s, &settings)?;
+        let found = history_inverse(&self.model, &angles, step_s, &settings)?;
         let output = shown(self, &found.output_deg, is_displacement);
         Ok(Commanded {
             error: deviation_of(&output, wanted, true),

@@ -1,9 +1,12 @@
 //! The content of an actuator file: a model with where it comes from and how well it fits.
 
 pub(crate) mod at_work;
+pub(crate) mod doubts;
+pub(crate) mod history_inverse;
 
+use doubts::Doubt;
+use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
-use preisach_dyn::{ActuatorModel, Doubt};
 use rotor_base::RecordUse;
 use serde::{Deserialize, Serialize};
 
@@ -166,6 +169,6 @@ impl StoredActuator {
 
     /// What is impossible or unlikely about the actuator; nothing is known of that of a generic loop.
     pub fn doubts(&self) -> Vec<Doubt> {
-        if self.channels.is_some() { Vec::new() } else { self.model.doubts() }
+        if self.channels.is_some() { Vec::new() } else { doubts::doubts(&self.model) }
     }
 }

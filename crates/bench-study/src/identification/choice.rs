@@ -59,8 +59,15 @@ impl BenchIdentification {
             Some(family) => table.rows.iter().find(|row| row.family == family),
             None => table.best(),
         };
+        let place = || dataset_place(&self.heading.folder);
         let Some(ModelRow { family, order, cross_validation, fitted, .. }) = chosen else {
-            return Ok(());
+            let Some(family) = choice else { return Ok(()) };
+            let message = format!(
+                "{} was left out: no training run shows a mode beyond a lag; train by a run through the resonance, \
+                 or ask for the model with --only",
+                family.name()
+            );
+            return Err(Problem::new(place(), Fault::Refused { message }).into());
         };
         let fitted = match fitted {
             Ok(fitted) => fitted,
@@ -73,8 +80,7 @@ impl BenchIdentification {
                     self.heading.subject().error(error),
                     if could.is_empty() { "none".to_owned() } else { could.join("; ") }
                 );
-                let place = dataset_place(&self.heading.folder);
-                return Err(Problem::new(place, Fault::Refused { message }).into());
+                return Err(Problem::new(place(), Fault::Refused { message }).into());
             }
         };
         let reason = match (choice, cross_validation) {

@@ -16,8 +16,8 @@ use actuator_gap::{DiagnosisError, NotJudged, judged};
 use measured_data::problem::Place;
 use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Family, Finding, FlapZero, Identification, ModelComparison, RecordUse,
-    RecordWindows, Settings, Subject, compare_models, identify,
+    BenchRecord, Candidates, Family, Finding, FlapZero, Identification, MOST_UNEXPLAINED,
+    ModelComparison, RecordUse, RecordWindows, Settings, Subject, compare_models, identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ pub struct BenchIdentification {
 }
 
 /// Models that a comparison fits at most: the families, and the orders of the one chosen.
-pub const MODELS_COMPARED: usize = 17;
+pub const MODELS_COMPARED: usize = 20;
 
 /// Whether all families of models are fitted to the same records, side by side with the identification, and their table
 /// kept.
@@ -251,6 +251,16 @@ fn identified(
     let mut identification = identification.map_err(|e| heading.failed(e))?;
     let findings = &mut identification.summary.findings;
     findings.extend(rests.iter().map(Finding::of_rest).chain(switched_on));
+    let comparison = comparison.map_err(|source| heading.failed(source))?;
+    let explained = |table: &ModelComparison| {
+        let error = table.best().and_then(|row| table.error_over(row, RecordUse::Train));
+        error.is_some_and(|(nrmse, _)| nrmse <= MOST_UNEXPLAINED)
+    };
+    // another model of the table describes the device
+    if comparison.as_ref().is_some_and(explained) {
+        let findings = &mut identification.summary.findings;
+        findings.retain(|finding| !matches!(finding, Finding::NotDescribed { .. }));
+    }
     // of a generic loop the table of models may still be of use; a rotor needs an actuator
     let not_described = identification.summary.findings.iter().find_map(|finding| match finding {
         Finding::NotDescribed { nrmse_percent } => Some(*nrmse_percent),
@@ -262,7 +272,6 @@ fn identified(
     let model = identification.dynamic.clone();
     let fits = judged(&records, &identification, &model).map_err(|e| heading.misjudged(e))?;
     let pick = Pick::first_fit(&settings);
-    let comparison = comparison.map_err(|source| heading.failed(source))?;
     Ok(BenchIdentification {
         heading,
         identification,
@@ -323,5 +332,86 @@ impl BenchIdentification {
             runs: self.fits.clone(),
             model: self.model.clone(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use measured_data::{Accuracy, MeasuredTable, RunFile};
+    use preisach_dyn::{
+        ActuatorLaw, Calibration, HystereticOscillator, LinearGain, OscillatorParameters,
+    };
+    use std::f64::consts::TAU;
+
+    /// A slow loop and sines up to 75 Hz, as a law answers them, 1 deg/um.
+    fn bench(law: ActuatorLaw) -> BenchData {
+        let range = VoltageRange::amplified_stack();
+        let model = ActuatorModel::new(law, range, Calibration { deg_per_um: 1.0, zero_um: 0.0 });
+        let run = |(hz, volt): (f64, f64)| {
+            let time_step_s = if hz < 1.0 { 4e-3 } else { 1e-3 };
+            let at = |i: u32| time_step_s * f64::from(i);
+            let input: Vec<f64> =
+                (0..2000).map(|i| 65.0 + volt * (TAU * hz * at(i)).sin()).collect();
+            let output = model.simulate(&input, time_step_s).unwrap().output_deg;
+            let time_s = (0..2000).map(at).collect();
+            let id = format!("{hz} Hz, {volt} V");
+            let use_as = Some(RecordUse::Train);
+            let table = MeasuredTable { time_s, time_step_s, input, output, ..Default::default() };
+            Run { entry: RunFile { id, use_as, ..RunFile::default() }, table }
+        };
+        let runs = [(0.5, 80.0), (20.0, 60.0), (45.0, 20.0), (58.0, 12.0), (75.0, 20.0)];
+        BenchData {
+            title: String::new(),
+            folder: "bench".into(),
+            runs: runs.map(run).to_vec(),
+            flap_deg_per_um: Some(1.0),
+            command_range_volt: (range.lowest_volt(), range.highest_volt()),
+            accuracy: Accuracy::default(),
+            warnings: vec![],
+            content_hash: String::new(),
+        }
+    }
+
+    /// The paper's model does not describe it, another one of the table does.
+    #[test]
+    fn an_oscillator_is_not_outside_of_the_class() {
+        let law = HystereticOscillator::new(OscillatorParameters {
+            range_volt: VoltageRange::amplified_stack(),
+            gain_deg_per_volt: 0.1,
+            frequency_hz: 62.0,
+            damping_ratio: 0.04,
+            hysteretic_share: 0.4,
+            loading_per_deg: 0.1,
+            unloading_per_deg: 0.1,
+            offset_deg: 0.0,
+        });
+        let data = bench(ActuatorLaw::HystereticOscillator(law.unwrap()));
+        let alone = identify_bench(&data, &Settings::default(), None).unwrap_err();
+        assert!(
+            matches!(
+                alone,
+                BenchError::Actuator { source: PreisachError::NotDescribed { .. }, .. }
+            ),
+            "{alone}"
+        );
+        let compared = Some(Comparing::all(&|| ()));
+        let mut found = identify_bench(&data, &Settings::default(), compared).unwrap();
+        found.pick(None).unwrap();
+        assert_eq!(found.pick.family, Family::HystereticOscillator);
+        let findings = &found.identification.summary.findings;
+        assert!(!findings.iter().any(|f| matches!(f, Finding::NotDescribed { .. })));
+    }
+
+    /// A model that was left out is not replaced by another one in silence.
+    #[test]
+    fn a_mode_that_no_run_shows_is_refused_with_the_remedy() {
+        let line = LinearGain { gain_deg_per_volt: 0.1, bias_volt: 65.0 };
+        let data = bench(ActuatorLaw::Linear(line));
+        let compared = Some(Comparing::all(&|| ()));
+        let mut found = identify_bench(&data, &Settings::default(), compared).unwrap();
+        let message = found.pick(Some(Family::BoucWenMode)).unwrap_err().to_string();
+        assert!(message.contains("Bouc-Wen + mode was left out"), "{message}");
+        assert!(message.contains("--only"), "{message}");
     }
 }

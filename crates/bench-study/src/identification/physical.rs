@@ -60,6 +60,7 @@ fn gain(model: &ActuatorModel) -> Option<f64> {
         ActuatorLaw::Linear(law) => Some(law.gain_deg_per_volt),
         ActuatorLaw::BoucWen(law) => Some(law.parameters().gain_deg_per_volt),
         ActuatorLaw::PrandtlIshlinskii(law) => Some(law.parameters().gain_deg_per_volt),
+        ActuatorLaw::HystereticOscillator(law) => Some(law.parameters().gain_deg_per_volt),
         _ => None,
     }
 }
@@ -95,6 +96,16 @@ fn reading(name: &str) -> Option<Reading> {
         "ln growth of the half-widths, s" => {
             plain("growth of the half-widths", Of::Word("s"), f64::exp, FREE)
         }
+        "ln natural frequency, Hz" => {
+            plain("natural frequency of the mode", Of::Word("Hz"), f64::exp, FREE)
+        }
+        "ln damping ratio" => plain("damping ratio of the mode", Of::Word(""), f64::exp, FREE),
+        "hysteretic share of the stiffness, logit" => plain(
+            "hysteretic share of the stiffness",
+            Of::Word("%"),
+            |x| 99.0 * share(x),
+            [0.0, 99.0],
+        ),
         "ln relaxation time, s" => plain("relaxation time", Of::Word("s"), f64::exp, FREE),
         "share at once, logit" => {
             plain("share that follows at once", Of::Word("%"), |x| 30.0 * share(x), [0.0, 30.0])

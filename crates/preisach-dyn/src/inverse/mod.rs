@@ -4,17 +4,14 @@
 //! |---|---|
 //! | the next output of a static model, exactly | [`StaticPreisach::inverse`](crate::StaticPreisach::inverse) |
 //! | a periodic flap history of any actuator | [`ActuatorModel::periodic_inverse`](crate::ActuatorModel::periodic_inverse) |
-//! | any flap history of any actuator | [`ActuatorModel::history_inverse`](crate::ActuatorModel::history_inverse) |
 //!
 //! The bias that keeps a mean of zero under a given control is another question: the mean is then the
 //! only unknown, and the controller answers it.
 
-mod history;
 mod joints;
 mod newton;
 mod periodic;
 mod sample;
 mod settings;
 
-pub use history::{HistoryInverse, HistoryInverseSettings};
 pub use settings::{InverseSettings, PeriodicInverse};

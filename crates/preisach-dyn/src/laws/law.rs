@@ -1,9 +1,9 @@
 //! The laws between voltage and free flap angle: one enum of all of them.
 
 use crate::{
-    BoucWen, BoucWenMemory, DynamicMemory, DynamicPreisach, HysteresisLaw, LinearGain, PlayMemory,
-    PrandtlIshlinskii, PrandtlStop, PreisachError, StartState, StaticPreisach, StepCounts,
-    WidthsMemory,
+    BoucWen, BoucWenMemory, DynamicMemory, DynamicPreisach, HysteresisLaw, HystereticOscillator,
+    LinearGain, OscillatorMemory, PlayMemory, PrandtlIshlinskii, PrandtlStop, PreisachError,
+    StartState, StaticPreisach, StepCounts, WidthsMemory,
 };
 use serde::{Deserialize, Serialize};
 
@@ -25,6 +25,8 @@ pub enum ActuatorLaw {
     BoucWen(BoucWen),
     /// Stops: an output that leads its input, as friction does.
     PrandtlStop(PrandtlStop),
+    /// Bouc-Wen hysteresis in the spring of an oscillator.
+    HystereticOscillator(HystereticOscillator),
 }
 
 /// The memory of any law.
@@ -43,6 +45,8 @@ pub enum LawMemory {
     BoucWen(BoucWenMemory),
     /// The plays of the stops and the last voltage.
     PrandtlStop(WidthsMemory),
+    /// Place, rate, hysteretic part and the last voltage.
+    HystereticOscillator(OscillatorMemory),
 }
 
 impl ActuatorLaw {
@@ -55,6 +59,7 @@ impl ActuatorLaw {
             Self::PrandtlIshlinskii(_) => "Prandtl-Ishlinskii",
             Self::BoucWen(_) => "Bouc-Wen",
             Self::PrandtlStop(_) => "Prandtl-Ishlinskii stops",
+            Self::HystereticOscillator(_) => "Bouc-Wen oscillator",
         }
     }
 
@@ -151,4 +156,12 @@ macro_rules! any_of {
     };
 }
 
-any_of!(Linear, StaticPreisach, DynamicPreisach, PrandtlIshlinskii, BoucWen, PrandtlStop);
+any_of!(
+    Linear,
+    StaticPreisach,
+    DynamicPreisach,
+    PrandtlIshlinskii,
+    BoucWen,
+    PrandtlStop,
+    HystereticOscillator
+);

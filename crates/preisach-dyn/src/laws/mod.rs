@@ -26,6 +26,7 @@ pub(crate) mod grid;
 pub(crate) mod hysteresis;
 pub(crate) mod law;
 pub(crate) mod memory;
+pub(crate) mod oscillator;
 pub(crate) mod play_map;
 pub(crate) mod prandtl;
 pub(crate) mod statics;

@@ -65,7 +65,7 @@ impl Resonance {
         2.0 * self.damping_ratio / (TAU * self.frequency_hz)
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> ResonanceStep {
+    pub(crate) fn prepared(&self, step_s: f64) -> ResonanceStep {
         let [[place, s], [pull, rate]] = self.free_motion(step_s);
         let (from_place, from_rate) = ([place, pull], [s, rate]);
         ResonanceStep { lead_s: self.lead_s(), step_s, from_place, from_rate }

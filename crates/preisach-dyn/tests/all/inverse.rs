@@ -6,9 +6,9 @@ use crate::common;
 use common::Wavy;
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Backlash, Calibration, CoulombFriction,
-    DynamicParameters, DynamicPreisach, HistoryInverseSettings, InverseSettings, LinkageStage,
-    LoadStiffness, PeriodicInverse, PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm,
-    Resonance, Saturation, StartState, StaticPreisach, TimeOrder, VoltageRange,
+    DynamicParameters, DynamicPreisach, InverseSettings, LinkageStage, LoadStiffness,
+    PeriodicInverse, PeriodicSettings, PlayMap, PlayMemory, PreisachError, RateForm, Resonance,
+    Saturation, StartState, StaticPreisach, TimeOrder, VoltageRange,
 };
 use proptest::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -323,96 +323,4 @@ fn an_amplifier_that_saturates_ends_the_reach() {
     };
     assert_eq!(range, VoltageRange::new(0.0, 130.0).unwrap());
     assert!(reachable_deg > 3.0, "{reachable_deg}");
-}
-
-/// Two tones that start at rest, with a hold: deg.
-fn wanted_history(size: f64, step_s: f64, samples: usize) -> Vec<f64> {
-    let tone = |t: f64, hz: f64| (std::f64::consts::TAU * hz * t).sin();
-    (0..samples)
-        .map(|k| {
-            let t = k as f64 * step_s;
-            let fade = (t / 0.2).min(1.0) * if t > 0.7 { 0.5 } else { 1.0 };
-            size * fade * (0.7 * tone(t, 10.0) + 0.3 * tone(t, 23.0))
-        })
-        .collect()
-}
-
-#[test]
-fn a_history_that_does_not_repeat_is_followed() {
-    let step_s = 1e-3;
-    let settings = HistoryInverseSettings::default();
-    let models = [
-        ("static", actuator(ActuatorLaw::StaticPreisach(static_model(24))), 5.0),
-        ("dynamic", dynamic(), 2.5),
-        ("linear", ActuatorModel::linear(VoltageRange::amplified_stack(), 4.0, 0.04), 3.0),
-    ];
-    for (name, model, size) in models {
-        let wanted = wanted_history(size, step_s, 1000);
-        let found = model.history_inverse(&wanted, step_s, &settings).unwrap();
-        // forward again, on its own
-        let again = model.simulate(&found.voltage_volt, step_s).unwrap().output_deg;
-        let worst = again.iter().zip(&wanted).fold(0.0_f64, |m, (y, w)| m.max((y - w).abs()));
-        let percent = 100.0 * worst / found.amplitude_deg;
-        println!("{name}: {percent:.4} % of amplitude after {} simulations", found.iterations);
-        assert!(percent < 0.1 && found.at_limit == 0, "{name}: {percent}");
-        assert!((worst - found.largest_error_deg).abs() < 1e-12, "{name}");
-        // one simulation, the linear gain, would not do
-        let once = HistoryInverseSettings { largest_iterations: 1, ..settings };
-        let naive = model.history_inverse(&wanted, step_s, &once).unwrap();
-        assert!(name == "linear" || naive.largest_error_deg > 20.0 * worst, "{name}");
-    }
-}
-
-/// Behind a mode or a delay no single sample can be put right: there it learns from run to run.
-#[test]
-fn a_history_behind_a_mode_or_a_delay_is_learnt() {
-    let with = |stage: LinkageStage| {
-        let mut model = actuator(ActuatorLaw::StaticPreisach(static_model(24)));
-        model.linkage.push(stage);
-        model
-    };
-    let mode = LinkageStage::Resonance(Resonance { frequency_hz: 150.0, damping_ratio: 0.05 });
-    let mut late = actuator(ActuatorLaw::StaticPreisach(static_model(24)));
-    late.amplifier.push(AmplifierStage::Delay(preisach_dyn::Delay { delay_s: 0.002 }));
-    for (name, model, most_percent) in [("mode", with(mode), 0.2), ("delay", late, 0.2)] {
-        let wanted = wanted_history(4.0, 5e-4, 2000);
-        let settings = HistoryInverseSettings::default();
-        let found = model.history_inverse(&wanted, 5e-4, &settings).unwrap();
-        let percent = 100.0 * found.rms_error_deg / found.amplitude_deg;
-        println!("{name}: rms {percent:.4} %, {} simulations", found.iterations);
-        assert!(percent < most_percent, "{name}: {percent}");
-        let two = HistoryInverseSettings { largest_iterations: 2, ..settings };
-        let start = model.history_inverse(&wanted, 5e-4, &two).unwrap();
-        assert!(start.rms_error_deg > 5.0 * found.rms_error_deg, "{name}");
-    }
-}
-
-/// The exact inverse of a static model, sample by sample, is the same voltage.
-#[test]
-fn a_learnt_history_is_that_of_the_exact_inverse() {
-    let law = static_model(12);
-    let model = actuator(ActuatorLaw::StaticPreisach(law.clone()));
-    let wanted = wanted_history(4.0, 1e-3, 600);
-    let settings = HistoryInverseSettings { tolerance: 1e-9, largest_iterations: 2000 };
-    let found = model.history_inverse(&wanted, 1e-3, &settings).unwrap();
-    let first = found.voltage_volt[0];
-    let mut memory = PlayMemory::new(law.grid(), first, StartState::Rest);
-    for (wanted, learnt) in wanted.iter().zip(&found.voltage_volt).skip(1) {
-        let exact = law.inverse(&mut memory, *wanted).unwrap();
-        assert!((exact - learnt).abs() < 1e-4, "{exact} V, learnt {learnt} V");
-    }
-}
-
-#[test]
-fn what_is_out_of_reach_is_left_as_error() {
-    let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 4.0, 0.04);
-    let wanted = [0.0, 3.0, 6.0, 3.0, 0.0];
-    let found = model.history_inverse(&wanted, 1e-3, &HistoryInverseSettings::default()).unwrap();
-    assert!(!found.is_met && found.at_limit == 1 && (found.largest_error_deg - 2.0).abs() < 1e-9);
-    let text = |wanted: &[f64]| {
-        let settings = HistoryInverseSettings::default();
-        model.history_inverse(wanted, 1e-3, &settings).unwrap_err().to_string()
-    };
-    assert!(text(&[1.0]).contains("wanted samples"));
-    assert!(text(&[1.0, f64::NAN]).contains("index 1"));
 }

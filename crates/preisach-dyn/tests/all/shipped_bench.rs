@@ -3,7 +3,8 @@
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures")]
 
 use preisach_dyn::identify::{
-    BenchRecord, Finding, Identification, RecordUse, RefinementOutcome, Settings, identify,
+    BenchRecord, Candidates, Family, Finding, Identification, RecordUse, RefinementOutcome,
+    Settings, compare_models, identify,
 };
 use preisach_dyn::{ActuatorLaw, PeriodicSettings, RateForm};
 use rotor_base::{Harmonic, HarmonicSeries};
@@ -164,4 +165,19 @@ fn the_literal_form_reports_how_often_it_was_ill_posed() {
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     assert_eq!(identified_on(1), *IDENTIFIED);
+}
+
+/// These records have no mode, and none is chosen where it is asked for.
+#[test]
+fn no_mode_is_chosen_for_the_records_shipped() {
+    let without = [Family::BoucWen, Family::StaticPreisach, Family::DynamicPreisach];
+    let with = Family::ALL.into_iter().filter(|family| family.has_mode());
+    let families: Vec<Family> = without.into_iter().chain(with).collect();
+    let candidates = Candidates { families, orders: Vec::new() };
+    let table = compare_models(&records(), &settings(), &candidates, &|| ()).unwrap();
+    assert_eq!(table.rows.len(), 6);
+    for row in &table.rows {
+        println!("{:26} {:?}", row.family.name(), row.cross_validation);
+    }
+    assert!(!table.rows[table.chosen].family.has_mode());
 }

@@ -2,6 +2,7 @@
 
 mod actuator;
 mod actuator_stages;
+mod bouc_wen_benchmark;
 #[path = "../all/oracles/mod.rs"]
 mod oracles;
 
@@ -15,4 +16,9 @@ fn actuator_rows() {
 #[test]
 fn actuator_stages_rows() {
     hold(actuator_stages::ROWS);
+}
+
+#[test]
+fn bouc_wen_benchmark_rows() {
+    hold(bouc_wen_benchmark::ROWS);
 }

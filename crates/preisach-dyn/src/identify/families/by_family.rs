@@ -1,7 +1,8 @@
 //! The families of models that the same records can be fitted with.
 
 use crate::identify::families::family::{Family, Fitted, Given, Search, share};
-use crate::identify::families::{layered, plays_fit, stop_fit};
+use crate::identify::families::{layered, mode, plays_fit, stop_fit};
+use crate::identify::fit::linear_mode::LinearMode;
 use crate::identify::fit::output_error::{Build, Slopes};
 use crate::identify::fit::preisach::{RateFit, fit_linear};
 use crate::identify::fit::refine::Refined;
@@ -57,6 +58,14 @@ pub(crate) fn fit(
             layered::creep(family, training, given)
         }
         Family::StaticPreisachRelaxation => layered::relaxation(training, given),
+        Family::StaticPreisachMode | Family::HystereticOscillator => {
+            let found = given.mode.ok_or(PreisachError::NotFitted { family: family.name() })?;
+            let fit = match family {
+                Family::StaticPreisachMode => mode::behind_static,
+                _ => mode::oscillator,
+            };
+            fit(training, given, found)
+        }
         _ => by_output_error(family, training, given),
     }
 }
@@ -71,7 +80,8 @@ fn by_output_error(
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
     let all = training.all();
-    let line = fit_linear(&training.slow);
+    let behind = given.mode.filter(|_| family.has_mode());
+    let line = behind.map_or_else(|| fit_linear(&training.slow), |found| found.line);
     let range = training.settings.range_volt;
     let middle_deg = line.output_deg(range.middle_volt());
     let wrap = |law: ActuatorLaw| training.settings.actuator_of(law);
@@ -100,7 +110,12 @@ fn by_output_error(
             exponent,
             envelope: envelope(x),
         };
-        Some(wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?)))
+        let mut model = wrap(ActuatorLaw::BoucWen(BoucWen::new(parameters).ok()?));
+        // the last parameters, of a family with a mode
+        if let Some(x) = x.as_slice().get(7..9) {
+            model.linkage.push(mode::stage(x)?);
+        }
+        Some(model)
     };
     let prandtl = |x: &DVector<f64>| {
         let step_volt = 0.5 * range.span_volt() / (PLAYS + 1) as f64;
@@ -128,8 +143,7 @@ fn by_output_error(
     match family {
         Family::Linear => {
             let build = |x: &DVector<f64>| Some(linear(x));
-            let names = ["gain, relative", "bias, tenths of the range"];
-            search(&build, &[DVector::zeros(2)], &names)
+            search(&build, &[DVector::zeros(2)], &["gain, relative", "bias, tenths of the range"])
         }
         Family::LinearLag => {
             let build = |x: &DVector<f64>| {
@@ -141,11 +155,9 @@ fn by_output_error(
             let names = ["gain, relative", "bias, tenths of the range", "ln time constant, s"];
             search(&build, &[1e-3, 1e-2, 5e-2].map(start), &names)
         }
-        Family::BoucWen => {
-            let start = |rise: f64| DVector::from_vec(vec![0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0]);
-            let starts = given.starts(&[-0.7, 0.5].map(start));
-            let mut names = common.to_vec();
-            names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
+        Family::BoucWen | Family::BoucWenMode => {
+            let (starts, names) = of_bouc_wen(&common, behind);
+            let starts = given.starts(&starts);
             // the exponents with a closed solution
             let builds = [1.0, 2.0].map(|exponent| move |x: &DVector<f64>| bouc_wen(x, exponent));
             let [one, two] = [&builds[0], &builds[1]].map(|build| {
@@ -170,4 +182,20 @@ fn by_output_error(
             search(&prandtl, &[1e-3, 1e-2].map(start), &names)
         }
     }
+}
+
+/// Where a search for the numbers of Bouc and Wen starts, and what they are called; those of a mode come last.
+fn of_bouc_wen(
+    common: &[&'static str],
+    behind: Option<&LinearMode>,
+) -> (Vec<DVector<f64>>, Vec<&'static str>) {
+    let start = |rise: f64| {
+        let own = [0.1, 0.0, 0.0, 0.0, 0.0, rise, 0.0].into_iter();
+        let all = own.chain(behind.iter().flat_map(|found| found.parameters()));
+        DVector::from_vec(all.collect())
+    };
+    let mut names = common.to_vec();
+    names.extend(["loop height, logit", "ln rise over 20 V", "ln (2 sigma - 1)"]);
+    names.extend(behind.iter().flat_map(|_| mode::MODE_NAMES));
+    ([-0.7, 0.5].map(start).to_vec(), names)
 }

@@ -2,6 +2,7 @@
 
 use crate::identify::families::by_family;
 use crate::identify::families::family::{Family, Fitted, Given};
+use crate::identify::fit::linear_mode::LinearMode;
 use crate::identify::fit::output_error::Estimate;
 use crate::identify::fit::preisach::trained_range;
 use crate::identify::fit::roles::Bench;
@@ -41,7 +42,8 @@ impl Order {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Candidates {
-    /// The families, the simplest first.
+    /// The families, the simplest first. Where these are all, those with a mode are left out unless training records
+    /// show one: neither a gain nor a lag comes near what a mode explains.
     pub families: Vec<Family>,
     /// Orders tried for the family chosen, beside that of the settings; none leaves it at that.
     pub orders: Vec<Order>,
@@ -149,9 +151,9 @@ pub fn compare_models(
     done: &(dyn Fn() + Sync),
 ) -> Result<ModelComparison, PreisachError> {
     let bench = Bench::new(records, settings)?;
-    let contest = Contest::new(&bench, settings)?;
+    let contest = Contest::new(&bench, settings, candidates)?;
     let own = Order::of(settings);
-    let (rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = candidates
+    let (rows, trials): (Vec<ModelRow>, Vec<Option<Trial>>) = contest
         .families
         .par_iter()
         .map(|&family| contest.row(family, own, Folds::Conditions, None).inspect(|_| done()))
@@ -232,10 +234,16 @@ struct Contest<'a> {
     zero_deg: f64,
     summary: Identifiability,
     smoothness: f64,
+    families: Vec<Family>,
+    mode: Option<LinearMode>,
 }
 
 impl<'a> Contest<'a> {
-    fn new(bench: &'a Bench<'a>, settings: &'a Settings) -> Result<Self, PreisachError> {
+    fn new(
+        bench: &'a Bench<'a>,
+        settings: &'a Settings,
+        candidates: &Candidates,
+    ) -> Result<Self, PreisachError> {
         let grid = PreisachGrid::new(settings.range_volt, settings.levels.max(1))?;
         let prepared = bench.prepared(&grid, settings)?;
         let training = Training::of(&prepared, grid, settings)?;
@@ -243,7 +251,14 @@ impl<'a> Contest<'a> {
         // one smoothness for all folds, chosen on the training records
         let map = static_fit::as_measured(&training)?;
         let smoothness = validate::smoothness(&training, &map).0;
-        Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness })
+        let mut families = candidates.families.clone();
+        let wanted = families.iter().any(|family| family.has_mode());
+        let mode = wanted.then(|| LinearMode::of(&training)).transpose()?;
+        // among all families those that no record asks for; named ones are wanted as they stand
+        if families == Family::ALL && !mode.is_some_and(|found| found.is_shown) {
+            families.retain(|family| !family.has_mode());
+        }
+        Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness, families, mode })
     }
 
     /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
@@ -266,7 +281,8 @@ impl<'a> Contest<'a> {
         let training = Training::of(prepared, grid, &settings)?;
         let Training { slow, fast, .. } = &training;
         let fit = |training: &Training, whole: Option<&Fitted>| {
-            by_family::fit(family, training, Given { smoothness: self.smoothness, whole })
+            let (smoothness, mode) = (self.smoothness, self.mode.as_ref());
+            by_family::fit(family, training, Given { smoothness, mode, whole })
         };
         let whole = known.map_or_else(|| fit(&training, None), |known| Ok(known.whole.clone()));
         // places in the slow and the fast records, one after another

@@ -1,5 +1,6 @@
 //! The families of models, the records they are fitted to, and the search for their parameters.
 
+use crate::identify::fit::linear_mode::LinearMode;
 use crate::identify::fit::output_error::{
     Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty, estimates,
 };
@@ -19,6 +20,10 @@ pub enum Family {
     LinearLag,
     /// Bouc-Wen hysteresis, rate-independent.
     BoucWen,
+    /// Bouc-Wen hysteresis before a mode.
+    BoucWenMode,
+    /// An oscillator with Bouc-Wen hysteresis in its spring.
+    HystereticOscillator,
     /// Prandtl-Ishlinskii hysteresis, rate-independent: plays of weights that are not negative.
     PrandtlPlays,
     /// Prandtl-Ishlinskii hysteresis whose half-widths grow with the voltage rate.
@@ -29,6 +34,8 @@ pub enum Family {
     StaticPreisach,
     /// Static Preisach before creep along the logarithm of time.
     StaticPreisachCreep,
+    /// Static Preisach before a mode.
+    StaticPreisachMode,
     /// Dynamic Preisach, implicit Euler in time.
     DynamicPreisachFirst,
     /// Dynamic Preisach, second order in time.
@@ -42,15 +49,18 @@ pub enum Family {
 
 impl Family {
     /// All of them, from the simplest.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Linear,
         Self::LinearLag,
         Self::BoucWen,
+        Self::BoucWenMode,
+        Self::HystereticOscillator,
         Self::PrandtlPlays,
         Self::PrandtlIshlinskii,
         Self::PrandtlStop,
         Self::StaticPreisach,
         Self::StaticPreisachCreep,
+        Self::StaticPreisachMode,
         Self::DynamicPreisachFirst,
         Self::DynamicPreisach,
         Self::DynamicPreisachCreep,
@@ -63,11 +73,14 @@ impl Family {
             Self::Linear => "linear gain",
             Self::LinearLag => "linear gain + lag",
             Self::BoucWen => "Bouc-Wen",
+            Self::BoucWenMode => "Bouc-Wen + mode",
+            Self::HystereticOscillator => "Bouc-Wen oscillator",
             Self::PrandtlPlays => "Prandtl-Ishlinskii plays",
             Self::PrandtlIshlinskii => "rate-dependent Prandtl-Ishlinskii",
             Self::PrandtlStop => "Prandtl-Ishlinskii stops",
             Self::StaticPreisach => "static Preisach",
             Self::StaticPreisachCreep => "static Preisach + creep",
+            Self::StaticPreisachMode => "static Preisach + mode",
             Self::DynamicPreisachFirst => "dynamic Preisach, first order",
             Self::DynamicPreisach => "dynamic Preisach, second order",
             Self::DynamicPreisachCreep => "dynamic Preisach + creep",
@@ -80,7 +93,7 @@ impl Family {
     /// Whether a fit needs records at several frequencies.
     pub fn needs_rate(self) -> bool {
         use Family::{DynamicPreisach, DynamicPreisachCreep, DynamicPreisachFirst};
-        use Family::{LinearLag, PrandtlIshlinskii, StaticPreisachRelaxation};
+        use Family::{LinearLag, PrandtlIshlinskii, StaticPreisachMode, StaticPreisachRelaxation};
         matches!(
             self,
             LinearLag
@@ -88,8 +101,14 @@ impl Family {
                 | DynamicPreisachFirst
                 | DynamicPreisach
                 | DynamicPreisachCreep
+                | StaticPreisachMode
                 | StaticPreisachRelaxation
         )
+    }
+
+    /// Whether a mode is part of it.
+    pub fn has_mode(self) -> bool {
+        matches!(self, Self::BoucWenMode | Self::HystereticOscillator | Self::StaticPreisachMode)
     }
 }
 
@@ -106,6 +125,8 @@ pub(crate) struct Fitted {
 pub(crate) struct Given<'a> {
     /// Smoothness of the rate maps.
     pub(crate) smoothness: f64,
+    /// The linear mode nearest to all training records, where a family with a mode is fitted.
+    pub(crate) mode: Option<&'a LinearMode>,
     /// A model of the family fitted to all training records, if there is one already.
     pub(crate) whole: Option<&'a Fitted>,
 }

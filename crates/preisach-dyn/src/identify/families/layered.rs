@@ -210,7 +210,10 @@ fn with_stages(mut model: ActuatorModel, x: &DVector<f64>, stroke_um: f64) -> Ac
 }
 
 /// The static map of the slow records with what the stages add to the law's output taken off.
-fn remapped(training: &Training<'_>, model: &ActuatorModel) -> Result<PlayMap, PreisachError> {
+pub(crate) fn remapped(
+    training: &Training<'_>,
+    model: &ActuatorModel,
+) -> Result<PlayMap, PreisachError> {
     let bare = ActuatorModel { linkage: Vec::new(), ..model.clone() };
     let targets = training
         .slow

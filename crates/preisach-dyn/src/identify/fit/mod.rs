@@ -2,6 +2,7 @@
 
 pub(crate) mod compare;
 pub(crate) mod density;
+pub(crate) mod linear_mode;
 pub(crate) mod output_error;
 pub(crate) mod passage;
 pub(crate) mod preisach;

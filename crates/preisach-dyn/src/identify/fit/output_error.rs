@@ -222,7 +222,7 @@ impl<'a> OutputError<'a> {
     }
 
     /// Samples of a record that give residuals.
-    fn kept(record: &Prepared) -> impl Iterator<Item = usize> {
+    pub(crate) fn kept(record: &Prepared) -> impl Iterator<Item = usize> + Clone + use<> {
         record.record.trained_samples().step_by(Self::stride(record))
     }
 

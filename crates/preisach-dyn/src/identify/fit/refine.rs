@@ -116,7 +116,7 @@ const PARAMETERS: usize = 12;
 pub(crate) const SHAPE: usize = 7;
 
 /// What the parameters do, in their order.
-const NAMES: [&str; PARAMETERS] = [
+pub(crate) const NAMES: [&str; PARAMETERS] = [
     "offset, deg",
     "ln mu0",
     "ln mu0 per centre",

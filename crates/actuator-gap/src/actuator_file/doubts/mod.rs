@@ -2,7 +2,7 @@
 
 mod stages;
 
-use crate::{ActuatorLaw, ActuatorModel, HysteresisLaw, LinkageStage, StartState};
+use preisach_dyn::{ActuatorLaw, ActuatorModel, HysteresisLaw, LinkageStage, StartState};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -49,92 +49,91 @@ const LEAST_TRAVEL_DEG: f64 = 1e-9;
 const SWEEP: u32 = 32;
 const SLOW_S: f64 = 1e6;
 
-impl ActuatorModel {
-    /// What is impossible or unlikely about this actuator, in the order of its chain; empty for a sound
-    /// one. Parameters outside the ranges of their stages are errors of [`Self::check_stages`].
-    ///
-    /// The law moves, upwards, and over the whole range of commands; limits and thresholds act inside
-    /// that range; gaps are smaller than the stroke; one stage feels the load; no stage is without
-    /// effect; sizes are the usual ones of their stages, widened some ten times.
-    pub fn doubts(&self) -> Vec<Doubt> {
-        let mut doubts = Doubts::default();
-        let per_um = self.calibration.deg_per_um;
-        let gain = "calibration.deg_per_um";
-        if !(per_um.is_finite() && per_um != 0.0) {
-            let found = format!("{per_um} deg/um");
-            let remedy = "give the gain of the bench";
-            doubts.at(gain).impossible("", found, "a number other than 0", remedy);
-        }
-        let stroke_um = (self.law_doubts(&mut doubts) / per_um).abs();
-        let moves = stroke_um.is_finite() && stroke_um * per_um.abs() >= LEAST_TRAVEL_DEG;
-        if moves && !(LEAST_STROKE_UM..=MOST_STROKE_UM).contains(&stroke_um) {
-            let found = format!("a stroke of {stroke_um:.3} um");
-            let remedy = "check deg_per_um and the law's unit";
-            doubts.at(gain).unlikely("", found, "50 to 1000 um", remedy);
-        }
-        for (i, stage) in self.amplifier.iter().enumerate() {
-            stages::amplifier(stage, self.range_volt, doubts.at(format!("amplifier[{i}]")));
-        }
-        for (i, stage) in self.linkage.iter().enumerate() {
-            stages::linkage(stage, stroke_um, doubts.at(format!("linkage[{i}]")));
-        }
-        stages::gaps(&self.linkage, stroke_um, doubts.at("linkage"));
-        let loads = |stage: &&LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
-        let count = self.linkage.iter().filter(loads).count();
-        if count > 1 {
-            let found = format!("{count} LoadStiffness stages");
-            let expected = "one: each takes the whole load";
-            doubts.at("linkage").impossible("", found, expected, "make them one");
-        }
-        for (i, stage) in self.sensor.iter().enumerate() {
-            stages::sensor(stage, stroke_um, doubts.at(format!("sensor[{i}]")));
-        }
-        doubts.list
+/// What is impossible or unlikely about this actuator, in the order of its chain; empty for a sound
+/// one. Parameters outside the ranges of their stages are errors of [`ActuatorModel::check_stages`].
+///
+/// The law moves, upwards, and over the whole range of commands; limits and thresholds act inside
+/// that range; gaps are smaller than the stroke; one stage feels the load; no stage is without
+/// effect; sizes are the usual ones of their stages, widened some ten times.
+pub(super) fn doubts(model: &ActuatorModel) -> Vec<Doubt> {
+    let mut doubts = Doubts::default();
+    let per_um = model.calibration.deg_per_um;
+    let gain = "calibration.deg_per_um";
+    if !(per_um.is_finite() && per_um != 0.0) {
+        let found = format!("{per_um} deg/um");
+        let remedy = "give the gain of the bench";
+        doubts.at(gain).impossible("", found, "a number other than 0", remedy);
     }
+    let stroke_um = (law_doubts(model, &mut doubts) / per_um).abs();
+    let moves = stroke_um.is_finite() && stroke_um * per_um.abs() >= LEAST_TRAVEL_DEG;
+    if moves && !(LEAST_STROKE_UM..=MOST_STROKE_UM).contains(&stroke_um) {
+        let found = format!("a stroke of {stroke_um:.3} um");
+        let remedy = "check deg_per_um and the law's unit";
+        doubts.at(gain).unlikely("", found, "50 to 1000 um", remedy);
+    }
+    for (i, stage) in model.amplifier.iter().enumerate() {
+        stages::amplifier(stage, model.range_volt, doubts.at(format!("amplifier[{i}]")));
+    }
+    for (i, stage) in model.linkage.iter().enumerate() {
+        stages::linkage(stage, stroke_um, doubts.at(format!("linkage[{i}]")));
+    }
+    stages::gaps(&model.linkage, stroke_um, doubts.at("linkage"));
+    let loads = |stage: &&LinkageStage| matches!(stage, LinkageStage::LoadStiffness(_));
+    let count = model.linkage.iter().filter(loads).count();
+    if count > 1 {
+        let found = format!("{count} LoadStiffness stages");
+        let expected = "one: each takes the whole load";
+        doubts.at("linkage").impossible("", found, expected, "make them one");
+    }
+    for (i, stage) in model.sensor.iter().enumerate() {
+        stages::sensor(stage, stroke_um, doubts.at(format!("sensor[{i}]")));
+    }
+    doubts.list
+}
 
-    /// Doubts about the law alone; how far it moves over the range of commands, slowly, deg.
-    fn law_doubts(&self, doubts: &mut Doubts) -> f64 {
-        let range = self.range_volt;
-        let own = match &self.law {
-            ActuatorLaw::Linear(_) => range,
-            ActuatorLaw::StaticPreisach(law) => law.grid().range(),
-            ActuatorLaw::DynamicPreisach(law) => law.grid().range(),
-            ActuatorLaw::PrandtlIshlinskii(law) => law.parameters().range_volt,
-            ActuatorLaw::BoucWen(law) => law.parameters().range_volt,
-            ActuatorLaw::PrandtlStop(law) => law.parameters().range_volt,
-        };
-        let [low, high] = [range.lowest_volt(), range.highest_volt()];
-        let found = format!("{low} to {high} V");
-        let expected =
-            format!("inside the law's {} to {} V", own.lowest_volt(), own.highest_volt());
-        let excess = own.excess_volt(low).max(own.excess_volt(high));
-        if high <= own.lowest_volt() || low >= own.highest_volt() {
-            let remedy = "give the range the law was fitted in";
-            doubts.at("range_volt").impossible("", found, &expected, remedy);
-        } else if excess > BEYOND * own.span_volt() {
-            let remedy = "the law has no numbers out there; narrow the range or fit again";
-            doubts.at("range_volt").unlikely("", found, &expected, remedy);
-        }
-        // so slowly that no rate counts
-        let (mut memory, first) = self.law.start(low, StartState::RisingFromLowest);
-        let mut last = first;
-        for part in 1..=SWEEP {
-            let volt = low + range.span_volt() * f64::from(part) / f64::from(SWEEP);
-            last = self.law.step(&mut memory, volt, SLOW_S);
-        }
-        let travel = last - first;
-        doubts.at("law");
-        let found = format!("{travel:.3e} deg over the range of commands");
-        if travel.is_nan() || travel.abs() < LEAST_TRAVEL_DEG {
-            doubts.impossible("", found, "a flap that moves", "give the law a gain other than 0");
-        } else if travel < 0.0 {
-            let remedy = "change its sign, or leave it if the linkage turns the motion round";
-            doubts.unlikely("", found, "an output that rises with the voltage", remedy);
-        } else if travel > MOST_TRAVEL_DEG {
-            doubts.unlikely("", found, "less than 90 deg", "check the unit of the law's output");
-        }
-        travel
+/// Doubts about the law alone; how far it moves over the range of commands, slowly, deg.
+fn law_doubts(model: &ActuatorModel, doubts: &mut Doubts) -> f64 {
+    let range = model.range_volt;
+    let own = match &model.law {
+        ActuatorLaw::StaticPreisach(law) => law.grid().range(),
+        ActuatorLaw::DynamicPreisach(law) => law.grid().range(),
+        ActuatorLaw::PrandtlIshlinskii(law) => law.parameters().range_volt,
+        ActuatorLaw::BoucWen(law) => law.parameters().range_volt,
+        ActuatorLaw::PrandtlStop(law) => law.parameters().range_volt,
+        ActuatorLaw::HystereticOscillator(law) => law.parameters().range_volt,
+        // a line goes on for ever
+        _ => range,
+    };
+    let [low, high] = [range.lowest_volt(), range.highest_volt()];
+    let found = format!("{low} to {high} V");
+    let expected = format!("inside the law's {} to {} V", own.lowest_volt(), own.highest_volt());
+    let excess = own.excess_volt(low).max(own.excess_volt(high));
+    if high <= own.lowest_volt() || low >= own.highest_volt() {
+        let remedy = "give the range the law was fitted in";
+        doubts.at("range_volt").impossible("", found, &expected, remedy);
+    } else if excess > BEYOND * own.span_volt() {
+        let remedy = "the law has no numbers out there; narrow the range or fit again";
+        doubts.at("range_volt").unlikely("", found, &expected, remedy);
     }
+    // so slowly that no rate counts
+    let (mut memory, first) = model.law.start(low, StartState::RisingFromLowest);
+    let mut last = first;
+    for part in 1..=SWEEP {
+        let volt = low + range.span_volt() * f64::from(part) / f64::from(SWEEP);
+        last = model.law.step(&mut memory, volt, SLOW_S);
+    }
+    let travel = last - first;
+    doubts.at("law");
+    let found = format!("{travel:.3e} deg over the range of commands");
+    if travel.is_nan() || travel.abs() < LEAST_TRAVEL_DEG {
+        doubts.impossible("", found, "a flap that moves", "give the law a gain other than 0");
+    } else if travel < 0.0 {
+        let remedy = "change its sign, or leave it if the linkage turns the motion round";
+        doubts.unlikely("", found, "an output that rises with the voltage", remedy);
+    } else if travel > MOST_TRAVEL_DEG {
+        doubts.unlikely("", found, "less than 90 deg", "check the unit of the law's output");
+    }
+    travel
 }
 
 /// Doubts found so far, and the place that is looked at.
@@ -186,7 +185,7 @@ impl Doubts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
+    use preisach_dyn::{
         Accommodation, AmplifierStage, Backlash, Calibration, CoulombFriction, Depolarisation,
         LinearGain, LoadStiffness, MainsHum, Nonlinearity, NonlinearityShape, PlayMap,
         PreisachGrid, Quantisation, Saturation, SensorStage, StaticPreisach, VoltageRange,
@@ -198,9 +197,9 @@ mod tests {
 
     /// Field and weight of the only doubt.
     fn only(model: &ActuatorModel) -> (String, Weight) {
-        let doubts = model.doubts();
-        assert_eq!(doubts.len(), 1, "{doubts:?}");
-        (doubts[0].field.clone(), doubts[0].weight)
+        let found = doubts(model);
+        assert_eq!(found.len(), 1, "{found:?}");
+        (found[0].field.clone(), found[0].weight)
     }
 
     fn with_linkage(stages: Vec<LinkageStage>) -> ActuatorModel {
@@ -217,7 +216,7 @@ mod tests {
             stiffness_ratio: 0.2,
             compliance_um_per_newton: 0.9,
         }));
-        assert_eq!(model.doubts(), []);
+        assert_eq!(doubts(&model), []);
     }
 
     #[test]
@@ -248,10 +247,10 @@ mod tests {
             let law = ActuatorLaw::StaticPreisach(StaticPreisach::new(grid, map).unwrap());
             ActuatorModel { law, ..sound() }
         };
-        assert_eq!(law(-20.0, 150.0).doubts(), []);
-        assert_eq!(law(-50.0, 200.0).doubts(), []);
+        assert_eq!(doubts(&law(-20.0, 150.0)), []);
+        assert_eq!(doubts(&law(-50.0, 200.0)), []);
         assert_eq!(only(&law(0.0, 100.0)), ("range_volt".into(), Weight::Unlikely));
-        let apart = law(200.0, 300.0).doubts();
+        let apart = doubts(&law(200.0, 300.0));
         assert_eq!((&*apart[0].field, apart[0].weight), ("range_volt", Weight::Impossible));
     }
 
@@ -324,7 +323,7 @@ mod tests {
         assert_eq!(only(&twice), ("linkage".into(), Weight::Impossible));
         let soft = only(&with_linkage(vec![load(50.0)]));
         assert_eq!(soft, ("linkage[0].compliance_um_per_newton".into(), Weight::Unlikely));
-        let text = with_linkage(vec![load(50.0)]).doubts()[0].to_string();
+        let text = doubts(&with_linkage(vec![load(50.0)]))[0].to_string();
         assert!(text.contains("50 um/N") && text.contains("up to 20 um/N"), "{text}");
     }
 }

@@ -1,7 +1,7 @@
 //! Doubts about the stages around the law.
 
 use super::{BEYOND, Doubts};
-use crate::{AmplifierStage, LinkageStage, SensorStage, VoltageRange};
+use preisach_dyn::{AmplifierStage, LinkageStage, SensorStage, VoltageRange};
 
 /// Share of the stroke that a gap or friction may take before it is doubted.
 const WIDE_GAP: f64 = 0.2;
@@ -61,6 +61,7 @@ pub(super) fn amplifier(stage: &AmplifierStage, range: VoltageRange, doubts: &mu
                 doubts.unlikely(field, found, "a reverse voltage", "check the sign");
             }
         }
+        _ => {}
     }
 }
 
@@ -98,11 +99,9 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
                 doubts.unlikely("travel_um", found, "0.1 to 1 stroke", "check the unit");
             }
         }
-        LinkageStage::Resonance(mode) => {
-            if mode.frequency_hz < 10.0 {
-                let found = format!("{} Hz", mode.frequency_hz);
-                doubts.unlikely("frequency_hz", found, "60 to 400 Hz", "check value and unit");
-            }
+        LinkageStage::Resonance(mode) if mode.frequency_hz < 10.0 => {
+            let found = format!("{} Hz", mode.frequency_hz);
+            doubts.unlikely("frequency_hz", found, "60 to 400 Hz", "check value and unit");
         }
         LinkageStage::Backlash(joint) => {
             gap(joint.width_um, "the flap would never move; correct the width", doubts);
@@ -116,6 +115,7 @@ pub(super) fn linkage(stage: &LinkageStage, stroke_um: f64, doubts: &mut Doubts)
             doubts.above("stiffness_ratio", load.stiffness_ratio, "of the actuator's", 10.0);
             doubts.above("compliance_um_per_newton", load.compliance_um_per_newton, "um/N", 20.0);
         }
+        _ => {}
     }
 }
 
@@ -148,12 +148,10 @@ pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
                 doubts.unlikely("half_range_um", found, "half the stroke or more", remedy);
             }
         }
-        SensorStage::Quantisation(rounding) => {
-            if rounding.step_um >= stroke_um {
-                let found = format!("{} um of a stroke of {stroke_um:.1} um", rounding.step_um);
-                let remedy = "the reading would never change; correct the step";
-                doubts.impossible("step_um", found, "0.1 % of the stroke", remedy);
-            }
+        SensorStage::Quantisation(rounding) if rounding.step_um >= stroke_um => {
+            let found = format!("{} um of a stroke of {stroke_um:.1} um", rounding.step_um);
+            let remedy = "the reading would never change; correct the step";
+            doubts.impossible("step_um", found, "0.1 % of the stroke", remedy);
         }
         SensorStage::MainsHum(hum) => {
             doubts.idle(hum.amplitude_um == 0.0, "amplitude_um", "0 um");
@@ -163,5 +161,6 @@ pub(super) fn sensor(stage: &SensorStage, stroke_um: f64, doubts: &mut Doubts) {
                 doubts.unlikely("frequency_hz", found, "50, 60 or 400 Hz", "check value and unit");
             }
         }
+        _ => {}
     }
 }
