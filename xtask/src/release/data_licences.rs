@@ -15,8 +15,8 @@ use crate::{XtaskError, files};
 pub const PAGE: &str = "docs/src/data-licences.md";
 
 /// Folders of data, and folders of such folders.
-const SINGLE: [&str; 6] =
-    ["airfoils", "cases", "golden", "instrument_habits", "instruments", "mat"];
+const SINGLE: [&str; 7] =
+    ["airfoils", "cases", "golden", "instrument_habits", "instruments", "mat", "sweeps"];
 const GROUPS: [&str; 4] = ["bench", "measured", "points", "reference"];
 
 /// Licences of others whose text must be beside the data.

@@ -4,7 +4,8 @@ use super::{Finding, Tree};
 
 /// Rules for every member's `Cargo.toml`:
 ///
-/// - versions are written once, in the root: a dependency says `workspace = true`;
+/// - versions are written once, in the root: a dependency says `workspace = true`. A member of the tests that another member
+///   needs when it runs stands with path and version: the root has none, so that packages leave it out of their tests;
 /// - the workspace's lints apply;
 /// - a library or program that is not built for unit tests, `test = false`, has none;
 /// - a member below `crates/` has a `README.md` beside it.
@@ -24,7 +25,8 @@ pub fn manifests(tree: &Tree) -> Vec<Finding> {
             if is_without_tests(line) {
                 findings.extend(unit_tests(tree, path, section));
             }
-            if section.ends_with("dependencies") && entry && !is_inherited(line) {
+            let with_path = section == "dependencies" && is_of_tests(path, line);
+            if section.ends_with("dependencies") && entry && !is_inherited(line) && !with_path {
                 let fault = format!(
                     "`{line}`: versions are written once, in the root Cargo.toml; write \
                      `name.workspace = true`"
@@ -88,6 +90,12 @@ fn unit_tests(tree: &Tree, manifest: &str, section: &str) -> Vec<Finding> {
     let tested = own.filter(|file| file.text.lines().any(|line| line.trim() == "#[test]"));
     let fault = format!("has a test that is never run: {manifest} says `test = false`");
     tested.map(|file| Finding::of_file(&file.path, fault.clone())).collect()
+}
+
+/// Whether a line of a member that is no product names one of the tests by its folder, with a version.
+fn is_of_tests(manifest: &str, line: &str) -> bool {
+    let folder = if manifest.starts_with("tests/") { "path = \"../" } else { "path = \"../tests/" };
+    !manifest.starts_with("crates/") && line.contains(folder) && line.contains("version = \"=")
 }
 
 /// Whether a line takes its value from the workspace.
