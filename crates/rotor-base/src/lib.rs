@@ -15,6 +15,7 @@ mod frames;
 mod harmonics;
 mod lanes;
 pub mod limit;
+pub mod once;
 mod quadrature;
 mod record_use;
 mod rests;

@@ -77,16 +77,12 @@ impl Case {
     /// What a rotor at rest in trim, and its T, depend on; all else is as in a case that says nothing. Cases that are equal in
     /// this share both.
     pub fn of_rotor(&self) -> Self {
-        let ControlValues { harmonics, t_step_deg, t_inflow, .. } = self.control.clone();
-        Self {
-            title: String::new(),
-            actuator: ActuatorValues::default(),
-            control: ControlValues { harmonics, t_step_deg, t_inflow, ..ControlValues::default() },
-            flight: None,
-            measured: MeasuredFiles::default(),
-            uncertain: vec![],
-            ..self.clone()
-        }
+        let mut case = self.clone();
+        (case.title, case.flight, case.uncertain) = (String::new(), None, vec![]);
+        (case.actuator, case.measured) = (ActuatorValues::default(), MeasuredFiles::default());
+        let ControlValues { harmonics, t_step_deg, t_inflow, .. } = case.control;
+        case.control = ControlValues { harmonics, t_step_deg, t_inflow, ..Default::default() };
+        case
     }
 
     /// Step of the T matrix, V.

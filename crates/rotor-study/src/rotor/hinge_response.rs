@@ -1,11 +1,11 @@
 //! What the flap motions of a trimmed rotor do to its hinge moments.
 
 use crate::flaps::{HingeCoupling, HingePower};
-use crate::rotor::once::found;
 use crate::rotor::trimmed::TrimmedRotor;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
+use rotor_base::once::found;
 use rotor_base::series::{added, coefficients, only, scaled, weighted};
 use rotor_response::{HingeMoment, ResponseError, RotorSolution};
 

@@ -5,7 +5,6 @@ mod continuation;
 mod disk;
 mod hinge_response;
 mod inflow;
-mod once;
 mod reconverged;
 mod resonance;
 mod root_moments;

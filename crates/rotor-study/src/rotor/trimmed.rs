@@ -4,10 +4,10 @@ use crate::case::{Case, TInflowChoice};
 use crate::error::StudyError;
 use crate::rotor::authority::{FlapAuthority, HARMONICS};
 use crate::rotor::inflow::{SettledTrim, refuse_prescribed_circulation, settled_trim};
-use crate::rotor::once::{Once, found};
 use crate::rotor::reconverged::{ReconvergedAuthority, Reconverging};
 use crate::rotor::resonance::{dissimilar_rotors, refuse_resonance_of, trim_error};
 use nalgebra::DMatrix;
+use rotor_base::once::{Once, found};
 use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales};
 use rotor_response::{
@@ -67,12 +67,11 @@ impl TrimmedRotor {
     /// As [`Self::new`].
     pub fn near(case: &Case, other: &Self) -> Result<Self, StudyError> {
         let case = &case.of_rotor();
-        let tolerances =
-            ResponseTolerances { linear: ROUGHLY_LINEAR, ..case.response_tolerances() };
-        let harmonics: BTreeSet<usize> = case.control.harmonics.iter().flatten().copied().collect();
+        let mut tolerances = case.response_tolerances();
+        tolerances.linear = ROUGHLY_LINEAR;
+        let wanted = case.control.harmonics.iter().flatten().copied().collect::<BTreeSet<_>>();
         let solver = Self::solver_of(case, tolerances)?.with_matrix_of(&other.solver);
-        let harmonics = harmonics.into_iter().collect();
-        Self::trimmed(case, solver, Some(other.trim()), other.wake(), harmonics)
+        Self::trimmed(case, solver, Some(other.trim()), other.wake(), wanted.into_iter().collect())
     }
 
     /// The solver of a case's rotor.

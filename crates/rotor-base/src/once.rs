@@ -3,10 +3,13 @@
 use std::sync::{Arc, OnceLock};
 
 /// A value that is made once, whoever of the clones asks first.
-pub(super) type Once<T> = Arc<OnceLock<T>>;
+pub type Once<T> = Arc<OnceLock<T>>;
 
 /// The value, made if nobody has asked for it before; a failure is not kept.
-pub(super) fn found<T, E>(once: &Once<T>, make: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
+///
+/// # Errors
+/// That of `make`.
+pub fn found<T, E>(once: &Once<T>, make: impl FnOnce() -> Result<T, E>) -> Result<&T, E> {
     if let Some(known) = once.get() {
         return Ok(known);
     }
