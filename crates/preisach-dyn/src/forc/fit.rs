@@ -60,7 +60,7 @@ pub struct ForcFit {
 /// play 0; it is smoothed along the diagonal only.
 ///
 /// Assumes: the input came down from the upper end of the range, where the output was saturated.
-/// Correct the drift first, with [`ForcData::without_drift`].
+/// Correct the drift first.
 ///
 /// # Errors
 /// As [`ForcData::check`]; refused settings; [`PreisachError::QuadraticProgram`].

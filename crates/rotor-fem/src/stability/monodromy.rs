@@ -276,12 +276,12 @@ fn carry(
         for c in 0..dof {
             let mut place = motion.column_mut(c);
             place.axpy(after, &rates.column(c), 1.0);
-            for k in 0..STAGES {
-                place.axpy(step * step * twice[k], &stages.column(k * dof + c), 1.0);
+            for (k, share) in twice.iter().enumerate() {
+                place.axpy(step * step * share, &stages.column(k * dof + c), 1.0);
             }
             let mut rate = motion.column_mut(dof + c);
-            for k in 0..STAGES {
-                rate.axpy(step * once[k], &stages.column(k * dof + c), 1.0);
+            for (k, share) in once.iter().enumerate() {
+                rate.axpy(step * share, &stages.column(k * dof + c), 1.0);
             }
         }
         motion

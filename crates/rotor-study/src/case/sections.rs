@@ -76,13 +76,13 @@ impl Case {
 
     /// What a rotor at rest in trim, and its T, depend on; all else is as in a case that says nothing. Cases that are equal in
     /// this share both.
+    #[must_use]
     pub fn of_rotor(&self) -> Self {
-        let mut case = self.clone();
-        (case.title, case.flight, case.uncertain) = (String::new(), None, vec![]);
-        (case.actuator, case.measured) = (ActuatorValues::default(), MeasuredFiles::default());
-        let ControlValues { harmonics, t_step_deg, t_inflow, .. } = case.control;
-        case.control = ControlValues { harmonics, t_step_deg, t_inflow, ..Default::default() };
-        case
+        let mut own = self.clone();
+        (own.title, own.flight, own.uncertain, own.actuator, own.measured) = Default::default();
+        let ControlValues { harmonics, t_step_deg, t_inflow, .. } = own.control;
+        own.control = ControlValues { harmonics, t_step_deg, t_inflow, ..Default::default() };
+        own
     }
 
     /// Step of the T matrix, V.
