@@ -64,7 +64,7 @@ fn controls(done: &[Done]) -> Told {
     }
 }
 
-const DRIVES: &str = include_str!("../../../fixtures/points/ignored_hysteresis/points.csv");
+const DRIVES: &str = include_str!("../../shared/ignored_hysteresis.csv");
 
 /// Amplitude of the voltage at a point of the table, V.
 fn volt(id: &str) -> f64 {

@@ -34,7 +34,7 @@ fn highest_deg(root_text: &str, id: &str) -> f64 {
     cells.get(4).zip(cells.get(5)).map_or(f64::NAN, |(mean, amplitude)| mean + amplitude)
 }
 
-const POINTS: &str = include_str!("../../../fixtures/points/stall_naca0012/points.csv");
+const POINTS: &str = include_str!("../../shared/stall_naca0012.csv");
 
 /// Rms of measured less simulated over the amplitude of each loop of a load, in the unit of its coefficient: mean and
 /// harmonics added up.

@@ -17,8 +17,7 @@ pub(super) const STUDY: Study = Study {
     told: Teller::Simulating(told),
 };
 
-const MEASURED: &str =
-    include_str!("../../../fixtures/reference/rotor/epps_chandra_frequencies_hz.csv");
+const MEASURED: &str = include_str!("../../shared/epps_chandra_frequencies_hz.csv");
 /// Rows of the table: the second and third bending mode.
 const MODES: [&str; 2] = ["B2", "B3"];
 const SWEEPS_DEG: [f64; 4] = [0.0, 15.0, 30.0, 45.0];

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 use crate::{XtaskError, files};
 
 /// A case that is quick to run: that of the tests of the command.
-pub(super) const CASE: &str = include_str!("../../../crates/sim-driver/tests/command/quick.ron");
+pub(super) const CASE: &str = include_str!("../../shared/quick.ron");
 
 /// How files that are being written are named, so that none is taken for a result.
 const UNFINISHED: &str = ".hhc-";

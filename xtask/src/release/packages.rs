@@ -130,11 +130,12 @@ pub struct Outside {
 /// compiler.
 pub fn included(text: &str) -> Vec<(usize, String)> {
     let mut found = Vec::new();
-    for call in ["include_str!(", "include_bytes!(", "include!("] {
+    for call in ["include_str!", "include_bytes!", "include!"] {
         for (at, _) in text.match_indices(call) {
             let line = text[..at].matches('\n').count() + 1;
-            let rest = text[at + call.len()..].trim_start();
-            let literal = rest.strip_prefix('"').and_then(|rest| rest.split_once('"'));
+            let inside = text[at + call.len()..].strip_prefix('(').map(str::trim_start);
+            let quoted = inside.and_then(|inside| inside.strip_prefix('"'));
+            let literal = quoted.and_then(|quoted| quoted.split_once('"'));
             found.extend(literal.map(|(path, _)| (line, path.to_owned())));
         }
     }
@@ -231,13 +232,16 @@ pub fn check(root: &Path, target: &Path, install: bool) -> Result<Packed, XtaskE
     files::remove_folder(&unpacked)?;
     let failed = |source| XtaskError::Write { path: unpacked.clone(), source };
     std::fs::create_dir_all(&unpacked).map_err(failed)?;
-    for member in &of_registry {
+    // cargo builds all of them, the unpublished ones too
+    for member in &members {
         let name = format!("{}-{}", member.name, member.version);
         let package = target.join("package").join(format!("{name}.crate"));
         packed.bytes += std::fs::metadata(&package).map_or(0, |found| found.len());
         said(Command::new("tar").arg("-xzf").arg(&package).arg("-C").arg(&unpacked))?;
-        let own = licences(root, &unpacked.join(&name))?;
-        packed.faults.extend(own.iter().map(|fault| format!("{name}: {fault}")));
+        if member.is_published() {
+            let own = licences(root, &unpacked.join(&name))?;
+            packed.faults.extend(own.iter().map(|fault| format!("{name}: {fault}")));
+        }
         for Outside { source, line, included } in outside(&unpacked.join(&name))? {
             packed.faults.push(format!(
                 "{name}: {source}:{line} includes {included}, which is not in the package: move it into the crate"
