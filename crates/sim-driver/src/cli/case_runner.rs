@@ -277,6 +277,9 @@ mod tests {
     use super::*;
     use crate::case::{ActuatorChoice, BenchFolder, PAPER_CASE, shipped_case};
     use rotor_study::case::{ControlActuator, ControllerChoice, EffortChoice};
+    use rotor_study::{
+        LISTED_HARMONICS, MeasuredCurve, MeasuredData, Quantity, compare_curves, series_of,
+    };
 
     /// Bench data that go after they were hashed are no failure of the case: it cannot be read again, which ends the sweep.
     #[test]
@@ -334,5 +337,34 @@ mod tests {
             assert_eq!(format!("{:?}", beside.columns), format!("{:?}", alone.columns));
             assert_eq!(lock(&shared.rotors).len(), rotors, "{}", case.title);
         }
+        // the rotor that is kept is the one that is flown: another one in its place is felt
+        let place = |at: usize| lock(&shared.rotors)[at].1.clone();
+        let (heavy, light) = (place(0), place(1));
+        *lock(&light) = lock(&heavy).clone();
+        let (own, other) = (found(&anywhere(), &weighted), found(&shared, &weighted));
+        assert_ne!(format!("{:?}", other.columns), format!("{:?}", own.columns));
+    }
+
+    /// A computed curve beside itself agrees with itself, under the names that the book gives.
+    #[test]
+    fn a_measured_curve_has_columns_of_agreement() {
+        let values: Vec<f64> =
+            (0..360).map(|i| (0.5 + f64::from(i).to_radians().cos()).powi(12)).collect();
+        let measured = MeasuredCurve {
+            quantity: Quantity::NormalM2,
+            station_r: Some(0.87),
+            source: String::new(),
+            measured: MeasuredData::Harmonics(series_of(&values, LISTED_HARMONICS)),
+        };
+        let columns: BTreeMap<String, Cell> =
+            measured_columns(&compare_curves(&measured, &values)).into_iter().collect();
+        let number = |name: &str| match columns.get(name) {
+            Some(Cell::Number(value)) => *value,
+            other => panic!("{name}: {other:?}"),
+        };
+        let correlation = number("measured_cn_m2_r0p87_1_to_6_per_rev_correlation");
+        assert!((correlation - 1.0).abs() < 1e-12, "{correlation}");
+        assert!(number("measured_cn_m2_r0p87_2_to_6_per_rev_rms") < 1e-12);
+        assert!(number("cn_m2_r0p87_advancing_band_peak_to_peak") > 0.0);
     }
 }
