@@ -15,15 +15,16 @@ const SLACK_MB: f64 = 2.0;
 pub struct Memory {
     /// Cases of the sweep.
     pub cases: usize,
-    /// Largest resident memory seen in each tenth of the cases, MB; none where a tenth was over before it was looked at.
+    /// Mean resident memory seen in each tenth of the cases, MB; none where a tenth was over before it was looked at. The mean and
+    /// not the largest: two large cases that meet on two threads are no growth.
     pub tenths_mb: Vec<Option<f64>>,
     /// Largest resident memory of the process, MB.
     pub peak_mb: f64,
 }
 
 impl Memory {
-    /// Growth from the second tenth, when all is set up, to the last one, MB: that of the line nearest to them, for each tenth has a
-    /// largest case of its own. None of fewer than two.
+    /// Growth from the second tenth, when all is set up, to the last one, MB: that of the line nearest to them. None of
+    /// fewer than two.
     pub fn growth_mb(&self) -> Option<f64> {
         let seen = self.tenths_mb.iter().enumerate().skip(1);
         let seen: Vec<(f64, f64)> = seen.filter_map(|(i, mb)| Some((i as f64, (*mb)?))).collect();
@@ -50,7 +51,7 @@ impl std::fmt::Display for Memory {
             tenths.map(|mb| mb.map_or("-".to_owned(), |mb| format!("{mb:.1}"))).collect();
         write!(
             f,
-            "{} cases, resident MB by tenths of them: {}; at most {:.1}; growth {}",
+            "{} cases, mean resident MB by tenths of them: {}; at most {:.1}; growth {}",
             self.cases,
             shown.join(", "),
             self.peak_mb,
@@ -69,6 +70,8 @@ fn field_mb(status: &str, field: &str) -> Option<f64> {
 pub(super) struct Watch {
     /// Results that were there before it began.
     before: usize,
+    /// How often each tenth was looked at.
+    looks: [f64; 10],
     pub(super) memory: Memory,
 }
 
@@ -76,7 +79,7 @@ impl Watch {
     /// A watch over a sweep of which some results are there.
     pub(super) fn new(cases: usize, before: usize) -> Self {
         let memory = Memory { cases: cases - before, tenths_mb: vec![None; 10], peak_mb: 0.0 };
-        Self { before, memory }
+        Self { before, looks: [0.0; 10], memory }
     }
 
     /// Looks at a process while so many results are there.
@@ -85,8 +88,11 @@ impl Watch {
         let memory = &mut self.memory;
         if let Some(mb) = field_mb(&text, "VmRSS") {
             let done = there.saturating_sub(self.before);
-            let tenth = &mut memory.tenths_mb[(10 * done / memory.cases.max(1)).min(9)];
-            *tenth = Some(tenth.map_or(mb, |before| before.max(mb)));
+            let tenth = (10 * done / memory.cases.max(1)).min(9);
+            let looks = &mut self.looks[tenth];
+            *looks += 1.0;
+            let mean = memory.tenths_mb[tenth].unwrap_or_default();
+            memory.tenths_mb[tenth] = Some(mean + (mb - mean) / *looks);
         }
         memory.peak_mb = field_mb(&text, "VmHWM").unwrap_or_default().max(memory.peak_mb);
     }
