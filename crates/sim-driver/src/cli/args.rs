@@ -377,9 +377,9 @@ pub struct ExportArgs {
     /// if left out.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// Folder to write, never overwritten.
+    /// Folder to write, never overwritten; name of the file and form, such as `ACTUATOR_c`, if left out.
     #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
 }
 
 /// `hhc import`.
