@@ -7,7 +7,7 @@ pub fn flight_notes(case: &Case, values: &FlightValues, actuator: &str) -> Vec<S
     let actuator = if actuator.is_empty() { "the ideal linear one" } else { actuator };
     let mut notes = vec![
         format!(
-            "Truth: the rotor in trim at {} advance ratios, linear in its flaps, interpolated linearly in between. Every revolution is a steady state.",
+            "Truth: the rotor in trim at {} advance ratios, linear in its flaps, interpolated in between. Every revolution is a steady state.",
             if values.is_level() { 1 } else { values.knots }
         ),
         format!(
