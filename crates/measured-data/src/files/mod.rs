@@ -12,6 +12,6 @@ pub use folder::{Embedded, Folder, Source, open_reader};
 pub use ron_index::RonIndex;
 pub use ron_read::{RonFile, read_ron, ron_text};
 pub use write::{
-    default_model_file, refuse_input, refuse_inside, refuse_other_kind, refuse_other_text,
-    refuse_unwritable, remove_own, write_atomic, write_folder, write_new,
+    default_model_file, refuse_foreign, refuse_input, refuse_inside, refuse_other_kind,
+    refuse_other_text, refuse_unwritable, remove_own, write_atomic, write_folder, write_new,
 };

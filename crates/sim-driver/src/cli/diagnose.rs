@@ -18,6 +18,7 @@ use bench_study::stored::write_actuator;
 use measured_data::Accuracy;
 use rotor_gap::{TableData, read_table};
 use std::path::{Path, PathBuf};
+use study_text::known::{DIAGNOSIS_FILES, LADDER_FILES, PLAN_FILES, SPECIMENS_FILES};
 
 /// Name of the actuator a diagnosis extended.
 const EXTENDED_FILE: &str = "extended.ron";
@@ -42,6 +43,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
         return print(&Story::of(&found_in(args, (model, data), output, &store)?).render(form)?);
     }
     let names = specimen_names(&args.data)?;
+    args.records.force.files(output, SPECIMENS_FILES)?;
     if args.records.reference.is_some() {
         say(&format_args!(
             "warning: one --reference for several specimens: how they differ from each other is found as a cause"
@@ -65,6 +67,7 @@ fn of_points(
     output: &Path,
 ) -> Result<(), SimError> {
     let form = args.records.format.form();
+    args.records.force.files(output, DIAGNOSIS_FILES)?;
     let case = load_case(case)?;
     warn(&sweep.warnings, form);
     let progress = Progress::new(DIAGNOSIS);
@@ -82,6 +85,9 @@ fn of_points(
 /// Says what anyone's simulator lacks, from tables of it.
 fn tabled(args: &DiagnoseArgs, folder: &Path) -> Result<(), SimError> {
     let form = args.records.format.form();
+    if let Some(output) = &args.output {
+        args.records.force.files(output, DIAGNOSIS_FILES)?;
+    }
     let read = read_table(&Folder::Disk(folder.to_path_buf()))?;
     warn(&read.warnings, form);
     let TableData { title, folder, table, .. } = read;
@@ -95,6 +101,9 @@ fn tabled(args: &DiagnoseArgs, folder: &Path) -> Result<(), SimError> {
 /// Says what runs would show of an actuator, before they are measured.
 fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
     let Some(path) = &args.plan else { return Ok(()) };
+    if let Some(output) = &args.output {
+        args.records.force.files(output, PLAN_FILES)?;
+    }
     let refused = |file: &Path, message: &str| {
         let fault = Fault::Refused { message: message.to_owned() };
         Err(Problem::new(Place::file(file.display().to_string()), fault).into())
@@ -147,6 +156,9 @@ fn found_in(
     store: &KeptStructures<'_>,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
+    let force = args.records.force;
+    force.files(output, DIAGNOSIS_FILES)?;
+    force.actuator(&output.join(EXTENDED_FILE))?;
     let (model, case) = model_or_case(model)?;
     let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);
@@ -161,11 +173,13 @@ fn found_in(
     progress.finish();
     let found = found?;
     let findings = json(&Findings::from(&found))?;
+    let tables = found.figures();
+    force.tables(output, &tables)?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     if let Some(case) = case {
         write_extended_case(&case, output)?;
     }
-    write_texts(output, found.figures())?;
+    write_texts(output, tables)?;
     write_atomic(&output.join("findings.json"), findings.as_bytes())?;
     write_atomic(&output.join(PAGE_FILE), bench_page(&found).as_bytes())?;
     Ok(found)
@@ -209,7 +223,9 @@ fn begin(progress: &Progress, stage: Stage) {
 }
 
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
-    let (RecordsArgs { cache, format, .. }, output) = (&args.records, &args.output);
+    let (RecordsArgs { cache, format, force, .. }, output) = (&args.records, &args.output);
+    force.files(output, LADDER_FILES)?;
+    force.actuator(&output.join(EXTENDED_FILE))?;
     let (measured, reference) = both_records(&args.data, &args.records)?;
     let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
     let progress = Progress::new(DIAGNOSIS + RUNGS);
