@@ -8,7 +8,7 @@ mod write;
 
 pub use field::{Change, with_field_moved};
 pub(crate) use folder::STANDARD_INPUT;
-pub use folder::{Embedded, Folder, Source, open_reader};
+pub use folder::{Embedded, Folder, Source, distinct_names, open_reader};
 pub use ron_index::RonIndex;
 pub use ron_read::{RonFile, read_ron, ron_text};
 pub use write::{

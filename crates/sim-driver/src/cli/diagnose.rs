@@ -10,14 +10,14 @@ use crate::diagnose::{
     PointDiagnosis, PointStory, Question, Record, Records, Specimens, Stage, Story, bench_page,
     both, climb, extended, model_or_case, plan, points_of, records_of, usual_runs,
 };
-use crate::files::{Folder, SweepData, refuse_input, ron_text, write_atomic};
+use crate::files::{Folder, SweepData, distinct_names, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use bench_study::stored::write_actuator;
 use measured_data::Accuracy;
 use rotor_gap::{TableData, read_table};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use study_text::known::{DIAGNOSIS_FILES, LADDER_FILES, PLAN_FILES, SPECIMENS_FILES};
 
 /// Name of the actuator a diagnosis extended.
@@ -42,7 +42,7 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     if let [data] = &args.data[..] {
         return print(&Story::of(&found_in(args, (model, data), output, &store)?).render(form)?);
     }
-    let names = specimen_names(&args.data)?;
+    let names = distinct_names(&args.data)?;
     args.records.force.files(output, SPECIMENS_FILES)?;
     if args.records.reference.is_some() {
         say(&format_args!(
@@ -183,28 +183,6 @@ fn found_in(
     write_atomic(&output.join("findings.json"), findings.as_bytes())?;
     write_atomic(&output.join(PAGE_FILE), bench_page(&found).as_bytes())?;
     Ok(found)
-}
-
-/// Names of specimens: as much of the end of each path as tells them apart.
-fn specimen_names(data: &[PathBuf]) -> Result<Vec<String>, SimError> {
-    // a folder that is not there is told of where it is read
-    let paths: Vec<PathBuf> =
-        data.iter().map(|path| path.canonicalize().unwrap_or_else(|_| path.clone())).collect();
-    let ends = |depth: usize| -> Vec<String> {
-        let end = |path: &PathBuf| {
-            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            parts[parts.len().saturating_sub(depth)..].join("_").replace(['/', '\\'], "")
-        };
-        paths.iter().map(end).collect()
-    };
-    let deepest = paths.iter().map(|path| path.iter().count()).max().unwrap_or(0);
-    let is_told_apart =
-        |names: &Vec<String>| (1..names.len()).all(|i| !names[..i].contains(&names[i]));
-    (1..=deepest).map(ends).find(is_told_apart).ok_or_else(|| {
-        let message =
-            "one folder was given twice: give the folder of each specimen once".to_owned();
-        Problem::new(Place::file("--data"), Fault::Refused { message }).into()
-    })
 }
 
 /// Steps of the progress of a diagnosis, about percent of its time.

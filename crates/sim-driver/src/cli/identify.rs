@@ -20,6 +20,7 @@ use bench_study::samples_csv;
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::{EvenRecord, default_model_file};
 use preisach_dyn::identify::{Family, Settings};
+use report_page::MADE_HERE;
 use std::path::{Path, PathBuf};
 
 impl Printable for IdentifyResult {
@@ -51,7 +52,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         refuse_inside(&args.bench, path)?;
     }
     args.force.actuator(output)?;
-    args.force.page(page_path.as_deref())?;
+    args.force.holding(page_path.as_deref(), MADE_HERE, "page of hhc")?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
     let (glances, subject) = bench_study::glances(&data);
@@ -154,7 +155,7 @@ fn put_to_work(
             force.table(Some(path), &samples)?;
         } else {
             // a record has this header too: only the same table is known
-            force.same_table(path, &samples)?;
+            force.holding(Some(path), &samples, "table of hhc")?;
         }
         write_atomic(path, samples.as_bytes())?;
     }

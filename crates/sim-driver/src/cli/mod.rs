@@ -31,7 +31,6 @@ use crate::problem::Problems;
 use crate::progress::{is_quiet, set_quiet};
 use crate::sweep::at_advance_ratio;
 use clap::{Args, Parser};
-use report_page::MADE_HERE;
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -188,16 +187,7 @@ impl ForceArgs {
         self.holding(path, head, "table of hhc")
     }
 
-    /// Refuses to replace a table that is not this very one: of tables whose header line a record has too.
-    fn same_table(self, path: &Path, text: &str) -> Result<(), SimError> {
-        self.holding(Some(path), text, "table of hhc")
-    }
-
-    /// Refuses to replace a page that `hhc` did not write.
-    fn page(self, path: Option<&Path>) -> Result<(), SimError> {
-        self.holding(path, MADE_HERE, "page of hhc")
-    }
-
+    /// Refuses to replace a file that does not hold a text which is in all files of a kind, if one is to be written.
     fn holding(self, path: Option<&Path>, held: &str, kind: &'static str) -> Result<(), SimError> {
         let path = path.filter(|_| !self.force);
         path.map_or(Ok(()), |path| Ok(refuse_other_text(path, held, kind)?))
