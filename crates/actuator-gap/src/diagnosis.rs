@@ -159,7 +159,7 @@ pub fn diagnose(measured: &Records, question: &Question<'_>) -> Result<Diagnosis
     begin(Stage::BaseModel);
     let base =
         BaseModel::fit(fitted, range, None).ok_or_else(|| too_few("runs of the base model"))?;
-    let design = Design::of(&runs, &references, measured.is_bench);
+    let design = Design::of(&runs, &references, &measured.accuracy, measured.is_bench);
     let mut candidates = causes::candidates(&library, &design);
     let given = restrict(&mut candidates[..causes::LIBRARY.len()], &question.only)?;
     let setting = Setting {

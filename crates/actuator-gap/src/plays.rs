@@ -8,6 +8,9 @@ const PLAYS: usize = 20;
 const GROWTH: f64 = 1.4;
 /// Cells of the output map of the narrowest play.
 const CELLS: f64 = 12.0;
+/// Input up to which a law goes on beyond its range, over half of it: maps are straight there. An amplifier that is a little too
+/// strong, hum or an overshoot leave the range of the commands.
+const BEYOND: f64 = 1.3;
 /// 1.5 times 2 to the 52: a sum with it ends in the digits of the nearest whole number.
 const DIGITS: f64 = 6_755_399_441_055_744.0;
 /// The digits of a cell's number; more than a map has cells.
@@ -86,7 +89,7 @@ impl Plays {
     }
 
     fn coordinate(&self, input: f64) -> f64 {
-        ((input - self.middle) / self.half).clamp(-1.0, 1.0)
+        ((input - self.middle) / self.half).clamp(-BEYOND, BEYOND)
     }
 
     /// The plays at rest at an input.
@@ -113,9 +116,11 @@ impl Plays {
             for (play, &state) in self.all.iter().zip(&states) {
                 let (cell, t) = play.place(state);
                 let k = play.first + cell;
-                row.push((k, 0.5 * (1.0 - t) * (1.0 - t)));
-                row.push((k + 1, 0.5 + t - t * t));
-                row.push((k + 2, 0.5 * t * t));
+                // inside its cells `t` is from 0 to 1; what is beyond goes on straight
+                let (t, past) = inside(t);
+                row.push((k, 0.5 * (1.0 - t) * (1.0 - t) - past * (1.0 - t)));
+                row.push((k + 1, 0.5 + t - t * t + past * (1.0 - 2.0 * t)));
+                row.push((k + 2, 0.5 * t * t + past * t));
             }
             visit(i, &row);
         }
@@ -128,6 +133,9 @@ impl Plays {
     /// cells may be given to either: the maps are continuous there.
     pub(crate) fn outputs(&self, map: &OutputMap, inputs: &[f64]) -> Vec<f64> {
         let Some(&first) = inputs.first() else { return Vec::new() };
+        if inputs.iter().any(|&input| self.coordinate(input).abs() > 1.0) {
+            return self.outputs_beyond(map, first, inputs);
+        }
         let column = |of: fn(&Play) -> f64| std::array::from_fn(|k| of(&self.all[k]));
         let half_width: [f64; PLAYS] = column(|play| play.half_width);
         let per_unit: [f64; PLAYS] = column(|play| play.per_unit);
@@ -155,6 +163,22 @@ impl Plays {
                 sum
             })
             .collect()
+    }
+
+    /// The same where inputs leave the range: every map goes on straight beyond its ends.
+    fn outputs_beyond(&self, map: &OutputMap, first: f64, inputs: &[f64]) -> Vec<f64> {
+        let mut states = self.rest(first);
+        let mut one = |&input: &f64| {
+            self.advance(&mut states, input);
+            let of = |((play, cells), &state): ((&Play, &[Quadratic; MAP]), &f64)| {
+                let (cell, t) = play.place(state);
+                let [a, b, c] = cells[cell];
+                let (t, past) = inside(t);
+                a + t * (b + t * c) + past * (b + 2.0 * t * c)
+            };
+            map.offset + self.all.iter().zip(&map.cells).zip(&states).map(of).sum::<f64>()
+        };
+        inputs.iter().map(&mut one).collect()
     }
 
     /// The output maps of given coefficients.
@@ -235,6 +259,12 @@ impl Play {
         let cell = (x.max(0.0) as u32 as usize).min(self.cells - 1);
         (cell, x - cell as f64)
     }
+}
+
+/// A place in a cell, held inside it, and how far it was beyond.
+fn inside(place: f64) -> (f64, f64) {
+    let held = place.clamp(0.0, 1.0);
+    (held, place - held)
 }
 
 /// The smaller of two numbers that are there.
@@ -320,7 +350,7 @@ mod tests {
         let plays = Plays::new(-20.0, 150.0);
         let coefficients: Vec<f64> = (0..plays.count()).map(|k| (0.7 * k as f64).sin()).collect();
         let inputs: Vec<f64> =
-            (0..500).map(|i| 65.0 + 80.0 * (0.05 * f64::from(i)).sin()).collect();
+            (0..500).map(|i| 65.0 + 95.0 * (0.05 * f64::from(i)).sin()).collect();
         let direct = plays.outputs(&plays.map(0.3, &coefficients), &inputs);
         plays.rows(&inputs, |i, row| {
             let sum: f64 = row.iter().map(|&(k, v)| v * coefficients[k]).sum();
@@ -333,7 +363,7 @@ mod tests {
         let plays = Plays::new(-20.0, 150.0);
         let (rises, offset) = plays.line(2.5, 7.0);
         let coefficients = plays.rises_to_coefficients() * rises;
-        let inputs = [65.0, -13.0, 149.0, 20.0];
+        let inputs = [65.0, -13.0, 149.0, 155.0, 20.0, -26.0];
         let outputs = plays.outputs(&plays.map(offset, coefficients.as_slice()), &inputs);
         for (y, u) in outputs.iter().zip(inputs) {
             assert_abs_diff_eq!(*y, 7.0 + 2.5 * u, epsilon = 1e-10);

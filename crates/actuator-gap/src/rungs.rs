@@ -96,15 +96,16 @@ fn asked_of_line(
     range: (f64, f64),
 ) -> Result<Asked, GapError> {
     let library = [causes::LIBRARY.as_slice(), &[causes::HYSTERESIS]].concat();
-    let design = Design::of(slow, slow, measured.is_bench);
-    let candidates = causes::candidates(&library, &design);
-    let setting = Setting {
-        base: line,
-        references: Vec::new(),
-        causes: &library,
-        range,
-        accuracy: Accuracy::EXACT,
+    // gains and zeros are in the line already
+    let accuracy = Accuracy {
+        displacement: Accuracy::EXACT.displacement,
+        amplifier: Accuracy::EXACT.amplifier,
+        monitor: Accuracy::EXACT.monitor,
+        ..measured.accuracy
     };
+    let design = Design::of(slow, slow, &accuracy, measured.is_bench);
+    let candidates = causes::candidates(&library, &design);
+    let setting = Setting { base: line, references: Vec::new(), causes: &library, range, accuracy };
     let simulator = BenchSimulator::new(setting, slow.to_vec())?;
     // one cause at a time: a second would mend the form of the first
     let settings = Settings { most_causes: 1, ..Settings::default() };

@@ -349,6 +349,21 @@ mod tests {
         assert!(nuisance[0].ncols() > 0 && nuisance[0].iter().all(|v| v.is_finite()));
     }
 
+    /// A law that ends at its range misses three times as much.
+    #[test]
+    fn a_law_goes_on_beyond_the_range_it_was_read_in() {
+        let runs = [run(0.5, 1.0), run(1.7, 0.7), run(4.0, 0.9), run(9.0, 0.5), run(2.3, 0.25)];
+        let references: Vec<&Record> = runs.iter().collect();
+        let base = BaseModel::fit(&references, (-1.0, 1.0), None).unwrap();
+        let wider = run(0.5, 1.06);
+        let held: Vec<f64> = wider.input.iter().map(|u| u.clamp(-1.0, 1.0)).collect();
+        let [beyond, ends] = [&wider.input, &held].map(|input| {
+            let left = less(&wider.output, &base.predict(input, wider.step_s));
+            mean_square(&left).sqrt() / variance(&wider.output).sqrt()
+        });
+        assert!(beyond < 0.008 && ends > 3.0 * beyond, "{beyond}, {ends}");
+    }
+
     #[test]
     fn structure_of_other_runs_is_granted_a_quarter_more_than_the_fit_leaves() {
         // a bend that no play has: output that depends on the rate of the input

@@ -2,6 +2,7 @@
 
 use crate::numbers::{mean, range};
 use crate::record::{Record, slower};
+use measured_data::Accuracy;
 use model_gap::Sine;
 
 /// What the measured runs of a diagnosis contain.
@@ -42,7 +43,12 @@ pub(crate) struct Design {
 }
 
 impl Design {
-    pub(crate) fn of(runs: &[&Record], references: &[&Record], is_bench: bool) -> Self {
+    pub(crate) fn of(
+        runs: &[&Record],
+        references: &[&Record],
+        accuracy: &Accuracy,
+        is_bench: bool,
+    ) -> Self {
         let output = range(runs.iter().flat_map(|r| r.judged_output()));
         let mut rates: Vec<f64> = runs
             .iter()
@@ -68,7 +74,7 @@ impl Design {
             monitored_runs: runs.iter().filter(|r| r.amplifier.is_some()).count(),
             has_temperature: runs.iter().any(|r| r.temperature.is_some()),
             second_sensor_runs: runs.iter().filter(|r| r.has_ideal_sensor()).count(),
-            load_per_um: load_beyond(runs, references),
+            load_per_um: load_beyond(runs, references, 0.01 * accuracy.load_cell.gain_percent),
             load_told_runs: if reads_load(references) {
                 0
             } else {
@@ -103,15 +109,12 @@ pub(crate) fn reads_load(runs: &[&Record]) -> bool {
 }
 
 /// How far the load follows the displacement beyond what it did in the reference runs. A spring that was always there
-/// is part of the actuator; a load cell is trusted to [`LOAD_CELL_ERROR`] of what it reads.
-fn load_beyond(runs: &[&Record], references: &[&Record]) -> Option<(f64, f64)> {
+/// is part of the actuator; a load cell is trusted to a part `gain` of what it reads.
+fn load_beyond(runs: &[&Record], references: &[&Record], gain: f64) -> Option<(f64, f64)> {
     let (slope, error) = load_per_um(runs)?;
     let (before, error_before) = load_per_um(references).unwrap_or_default();
-    Some((slope - before, error.hypot(error_before).hypot(LOAD_CELL_ERROR * before)))
+    Some((slope - before, error.hypot(error_before).hypot(gain * before)))
 }
-
-/// Part of its reading that a load cell is trusted to.
-const LOAD_CELL_ERROR: f64 = 0.01;
 
 /// Slope of the load against the displacement over all runs with a load cell, each about its means, and its
 /// standard error.

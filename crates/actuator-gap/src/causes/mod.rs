@@ -100,6 +100,7 @@ pub(crate) fn chain_under(causes: &[BenchCause], effects: &[Effect]) -> Chain {
 mod tests {
     use super::*;
     use crate::record::Record;
+    use measured_data::Accuracy;
 
     fn design() -> Design {
         let input: Vec<f64> = (0..4000)
@@ -107,7 +108,7 @@ mod tests {
             .collect();
         let output = input.iter().map(|u| 2.5 * u).collect();
         let run = Record::new("a", 0.01, input, output);
-        Design::of(&[&run], &[&run], true)
+        Design::of(&[&run], &[&run], &Accuracy::default(), true)
     }
 
     /// The names and units other programs read; parameters of form are not among them.
@@ -185,15 +186,20 @@ mod tests {
                 ..Record::new("a", 0.01, output.clone(), output.clone())
             }
         };
-        let refuted = |before: f64, now: f64| {
-            let design = Design::of(&[&run(now)], &[&run(before)], true);
+        let mut accuracy = Accuracy::default();
+        let refuted_by = |before: f64, now: f64, accuracy: &Accuracy| {
+            let design = Design::of(&[&run(now)], &[&run(before)], accuracy, true);
             (load_stiffness::CAUSE.candidate)(&design).refuted.is_some()
         };
+        let refuted = |before: f64, now: f64| refuted_by(before, now, &accuracy);
         assert_eq!([0.0, 0.002, -0.002].map(|now| refuted(0.0, now)), [true, false, false]);
         // a spring that was always there is no new load, and its load cell tells none
         assert_eq!([0.02, 0.025].map(|now| refuted(0.02, now)), [true, false]);
+        // a load cell whose gain may be off by 10 % does not tell a quarter more
+        accuracy.load_cell.gain_percent = 10.0;
+        assert!(refuted_by(0.02, 0.025, &accuracy));
         let told = |before: f64| {
-            let design = Design::of(&[&run(0.025)], &[&run(before)], true);
+            let design = Design::of(&[&run(0.025)], &[&run(before)], &Accuracy::default(), true);
             (load_stiffness::CAUSE.candidate)(&design).is_told
         };
         assert_eq!([0.0, 0.02].map(told), [true, false]);
@@ -205,7 +211,7 @@ mod tests {
     fn one_frequency_says_nothing_about_rate() {
         let input: Vec<f64> = (0..4000).map(|i| 150.0 * (0.0628 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 0.01, input.clone(), input);
-        let design = Design::of(&[&run], &[], true);
+        let design = Design::of(&[&run], &[], &Accuracy::default(), true);
         for cause in candidates(&LIBRARY, &design) {
             let about_rate = [
                 "creep",

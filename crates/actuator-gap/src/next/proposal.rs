@@ -149,6 +149,7 @@ fn parting(bench: &Bench<'_>, experiment: &Experiment, open: &Found) -> Result<P
     let design = Design::of(
         &records.iter().collect::<Vec<_>>(),
         &bench.setting.references,
+        &bench.setting.accuracy,
         bench.design.is_bench,
     );
     let told = causes::candidates(bench.setting.causes, &design);
@@ -224,6 +225,7 @@ fn usual<'m>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use measured_data::Accuracy;
 
     const SELF: f64 = f64::INFINITY;
 
@@ -231,7 +233,7 @@ mod tests {
     fn every_experiment_that_a_cause_names_can_be_simulated() {
         let input: Vec<f64> = (0..400).map(|i| 80.0 * (0.1 * f64::from(i)).sin()).collect();
         let run = Record::new("a", 1e-3, input.clone(), input);
-        let design = Design::of(&[&run], &[&run], true);
+        let design = Design::of(&[&run], &[&run], &Accuracy::default(), true);
         let other = Record { input: run.input[..200].to_vec(), ..run.clone() };
         let catalogue = catalogue(Span { middle: 0.0, half: 80.0 }, &[&run], &[&other], true);
         for cause in crate::causes::candidates(&crate::causes::LIBRARY, &design) {

@@ -58,7 +58,7 @@ pub struct PlannedCause {
     pub seen_from: Option<f64>,
     /// Why the runs cannot show it.
     pub blocked: Option<String>,
-    /// What would be said of it, size by size; empty where it cannot be made so large.
+    /// What would be said of it, size by size, of either sign where it has two; empty where it cannot be made so large.
     pub rehearsed: Vec<Rehearsal>,
 }
 
@@ -67,6 +67,8 @@ pub struct PlannedCause {
 pub struct Rehearsal {
     /// Size, over the spread of the motion.
     pub size: f64,
+    /// Value of the parameter that makes the size, in its unit.
+    pub value: f64,
     /// The verdict.
     pub verdict: Verdict,
     /// How sure it is.
@@ -190,8 +192,8 @@ impl<'a> Rehearsed<'a> {
         let mut rehearsed = Vec::new();
         if candidate.blocked.is_none() {
             for size in SIZES {
-                if let Some(effect) = sized(&simulator, (c, candidate), size)? {
-                    rehearsed.push(self.rehearse(&simulator, &effect, size)?);
+                for (value, effect) in sized(&simulator, (c, candidate), size)? {
+                    rehearsed.push(self.rehearse(&simulator, &effect, [size, value])?);
                 }
             }
         }
@@ -209,7 +211,7 @@ impl<'a> Rehearsed<'a> {
         &self,
         simulator: &BenchSimulator<'_>,
         effect: &Effect,
-        size: f64,
+        [size, value]: [f64; 2],
     ) -> Result<Rehearsal, DiagnosisError> {
         let with = simulator.rehearsed(std::slice::from_ref(effect))?;
         let without = simulator.rehearsed(&[])?;
@@ -226,6 +228,7 @@ impl<'a> Rehearsed<'a> {
         let found = Findings::from(&diagnose(&measured, &question)?);
         Ok(Rehearsal {
             size,
+            value,
             verdict: found.verdict,
             confidence: found.confidence,
             causes: found.causes,
@@ -315,6 +318,22 @@ mod tests {
         let class = (told.class, told.class_confidence);
         assert_eq!(told.causes, only);
         assert_eq!(class, (Some(Class::LagBeforeTerminals), Some(Confidence::Confident)));
+    }
+
+    /// A gain may be too high or too low: both are rehearsed, and both are about as large as asked.
+    #[test]
+    fn a_plan_rehearses_both_signs() {
+        let runs = usual_runs((-20.0, 150.0));
+        let runs: Vec<Record> = runs.into_iter().filter(|run| run.id == "triangles").collect();
+        let told = asked(&straight(), &runs, &["sensor-gain".to_owned()]);
+        let values: Vec<f64> = told.causes[0].rehearsed.iter().map(|said| said.value).collect();
+        let expected = [0.03, -0.03, 0.06, -0.06];
+        assert_eq!(values.len(), expected.len(), "{values:?}");
+        for (value, expected) in values.iter().zip(expected) {
+            assert!((value / expected - 1.0).abs() < 0.03, "{values:?}");
+        }
+        let creep = asked(&straight(), &runs, &["backlash".to_owned()]);
+        assert_eq!(creep.causes[0].rehearsed.len(), 2, "a gap has one sign: {creep:?}");
     }
 
     #[test]

@@ -24,16 +24,17 @@ pub(super) fn spread(runs: &[Record]) -> f64 {
     (squares / f64::max(samples, 1.0)).sqrt()
 }
 
-/// A cause of a size, its spread over that of the motion; none where it has none so large. The first parameter that a weak
-/// effect grows with makes the size, the first of all where none is; the others stay where a search starts.
+/// A cause of a size, its spread over that of the motion, of either sign where it has two; none where it has none so large.
+/// The first parameter that a weak effect grows with makes the size, the first of all where none is; the others stay where a
+/// search starts. Each with the value of that parameter.
 pub(super) fn sized(
     simulator: &BenchSimulator<'_>,
     (candidate, own): (usize, &Candidate),
     size: f64,
-) -> Result<Option<Effect>, GapError> {
+) -> Result<Vec<(f64, Effect)>, GapError> {
     let at = own.parameters.iter().position(|p| p.is_amount || p.grows).unwrap_or(0);
     let (Some(start), Some(first)) = (own.starts.first(), own.parameters.get(at)) else {
-        return Ok(None);
+        return Ok(Vec::new());
     };
     let effect = |value: f64| {
         let mut values = start.clone();
@@ -49,26 +50,35 @@ pub(super) fn sized(
         }
         Ok(spread(&change) / motion)
     };
-    let low = first.coordinate(if first.is_amount { 0.0 } else { first.low });
-    let span = first.coordinate(first.high) - low;
-    let place = |k: usize| first.value(low + span * k as f64 / (PLACES - 1) as f64);
-    let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
-    let crosses = |k: &usize| (shares[*k] - size) * (shares[*k + 1] - size) <= 0.0;
-    let nearest = (0..PLACES - 1).filter(crosses).min_by(|&a, &b| {
+    let sides = if first.is_amount {
+        vec![[first.none, first.high], [first.none, first.low]]
+    } else {
+        vec![[first.low, first.high]]
+    };
+    let mut found = Vec::new();
+    for [from, to] in sides.into_iter().filter(|[from, to]| from != to) {
+        let [from, to] = [from, to].map(|end| first.coordinate(end));
+        let place = |k: usize| first.value(from + (to - from) * k as f64 / (PLACES - 1) as f64);
+        let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
+        let crosses = |k: &usize| (shares[*k] - size) * (shares[*k + 1] - size) <= 0.0;
         let away = |k: usize| (place(k) - start[at]).abs();
-        away(a).total_cmp(&away(b))
-    });
-    let Some(k) = nearest else { return Ok(None) };
-    let rises = shares[k] < shares[k + 1];
-    let (mut below, mut above) =
-        if rises { (place(k), place(k + 1)) } else { (place(k + 1), place(k)) };
-    for _ in 0..HALVINGS {
-        let middle = first.value(f64::midpoint(first.coordinate(below), first.coordinate(above)));
-        let found = share(middle)?;
-        if (found / size - 1.0).abs() < NEAR {
-            return Ok(Some(effect(middle)));
+        let nearest = (0..PLACES - 1).filter(crosses);
+        let Some(k) = nearest.min_by(|&a, &b| away(a).total_cmp(&away(b))) else { continue };
+        let (mut below, mut above) = if shares[k] < shares[k + 1] {
+            (place(k), place(k + 1))
+        } else {
+            (place(k + 1), place(k))
+        };
+        for _ in 0..HALVINGS {
+            let middle =
+                first.value(f64::midpoint(first.coordinate(below), first.coordinate(above)));
+            let reached = share(middle)?;
+            if (reached / size - 1.0).abs() < NEAR {
+                found.push((middle, effect(middle)));
+                break;
+            }
+            if reached < size { below = middle } else { above = middle }
         }
-        if found < size { below = middle } else { above = middle }
     }
-    Ok(None)
+    Ok(found)
 }

@@ -1,7 +1,7 @@
 //! The bench as the engine sees it: base model, stages of the causes, channels.
 
 use super::response::{Plant, Response, highest_mode_hz, line};
-use crate::base::BaseModel;
+use crate::base::{BaseModel, white_noise};
 use crate::causes::{BenchCause, Command, chain_under, reads_load};
 use crate::numbers::{less, mean, slope};
 use crate::record::Record;
@@ -9,6 +9,7 @@ use measured_data::Accuracy;
 use model_gap::discovery::{Signal, Simulator, TraceRole};
 use model_gap::{Effect, GapError};
 use preisach_dyn::LinkageStage;
+use rotor_base::variance;
 
 /// Most samples of all traces together; longer sets are averaged in blocks.
 const MOST_SAMPLES: usize = 60_000;
@@ -59,6 +60,8 @@ pub(crate) struct BenchSimulator<'a> {
     pub(crate) block: usize,
     pub(super) range: (f64, f64),
     pub(super) accuracy: Accuracy,
+    /// What two runs of one input differ by besides noise, over the spread of the output.
+    pub(super) repeatability: f64,
 }
 
 /// What a simulator of a bench is made of.
@@ -105,6 +108,28 @@ pub(crate) fn inputs_of(runs: &[&Record], range: (f64, f64)) -> Vec<usize> {
     runs.iter().map(first).collect()
 }
 
+/// What reference runs of one input differ by besides noise and zero, over the spread of the output: rms over the pairs of a
+/// run with the one before it of the same input; 0 without repeats. A record that is there twice is no repeat.
+fn repeatability_of(references: &[&Record], range: (f64, f64), spread: f64) -> f64 {
+    let mut squares = Vec::new();
+    for (k, run) in references.iter().enumerate() {
+        let is_repeat = |other: &&&Record| {
+            is_same_setup(other, run)
+                && other.window == run.window
+                && is_same_input(other, run, range)
+        };
+        let Some(before) = references[..k].iter().rfind(is_repeat) else { continue };
+        let difference = less(run.judged_output(), before.judged_output());
+        if difference.iter().any(|d| *d != 0.0) {
+            let white = white_noise(&difference).powi(2);
+            // what noise alone may read, five standard deviations of its variance
+            let chance = 5.0 * (2.0 / difference.len() as f64).sqrt();
+            squares.push((variance(&difference) - white * (1.0 + chance)).max(0.0));
+        }
+    }
+    if squares.is_empty() { 0.0 } else { mean(&squares).sqrt() / spread }
+}
+
 impl<'a> BenchSimulator<'a> {
     pub(crate) fn new(setting: Setting<'a>, runs: Vec<&'a Record>) -> Result<Self, GapError> {
         let Setting { base, references, causes, range, accuracy } = setting;
@@ -112,6 +137,8 @@ impl<'a> BenchSimulator<'a> {
         let shows_load = !reads_load(&references);
         let all: usize = runs.iter().map(|r| r.input.len()).sum();
         let block = all.div_ceil(MOST_SAMPLES).max(1);
+        let repeatability = repeatability_of(&references, range, base.spread)
+            .max(0.01 * accuracy.repeatability_percent);
         let mut channels = Vec::new();
         for (number, run) in runs.iter().enumerate() {
             let anchor = references
@@ -149,7 +176,7 @@ impl<'a> BenchSimulator<'a> {
             }
         }
         let plant = Plant::new(base, runs.clone(), causes, range)?;
-        Ok(Self { base, runs, causes, plant, channels, block, range, accuracy })
+        Ok(Self { base, runs, causes, plant, channels, block, range, accuracy, repeatability })
     }
 
     /// The runs under no effect.
@@ -321,4 +348,39 @@ pub(crate) fn averaged(values: &[f64], block: usize) -> Vec<f64> {
         return values.to_vec();
     }
     values.chunks_exact(block).map(|c| c.iter().sum::<f64>() / block as f64).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+    use model_gap::SplitMix;
+
+    /// A run of a sine whose output is the input, and what is added to it.
+    fn run(extra: impl Fn(f64) -> f64) -> Record {
+        let input: Vec<f64> = (0..2000).map(|i| 50.0 * (0.01 * f64::from(i)).sin()).collect();
+        let output = (0u32..).zip(&input).map(|(i, u)| u + extra(f64::from(i))).collect();
+        Record::new("a", 1e-3, input, output)
+    }
+
+    #[test]
+    fn what_repeats_differ_by_is_told_without_zero_and_noise() {
+        let noisy = |mut run: Record, draw: u64| {
+            let mut noise = SplitMix(draw);
+            run.output.iter_mut().for_each(|y| *y += 0.1 * noise.normal());
+            run
+        };
+        let (plain, again) = (noisy(run(|_| 0.0), 1), noisy(run(|_| 0.0), 2));
+        let drifted = noisy(run(|i| 4.0 + 0.5 * (0.005 * i).sin()), 3);
+        let of = |others: &[&Record]| {
+            repeatability_of(&[&[&plain], others].concat(), (-50.0, 50.0), 50.0)
+        };
+        assert_eq!(
+            (of(&[]), of(&[&plain])),
+            (0.0, 0.0),
+            "a record that is there twice is no repeat"
+        );
+        assert!(of(&[&again]) < 1e-4, "{}", of(&[&again]));
+        assert_relative_eq!(of(&[&drifted]), 0.5 / 2.0_f64.sqrt() / 50.0, max_relative = 0.1);
+    }
 }

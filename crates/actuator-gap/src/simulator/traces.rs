@@ -16,12 +16,8 @@ use rotor_base::variance;
 const MOST_DIRECTIONS: usize = 32;
 /// Part of the range by which a sample of a voltage monitor may stray from the terminals beside its gain and zero.
 const MONITOR_ERROR: f64 = 1e-2;
-/// Temperature that a thermometer is trusted to, K.
-const THERMOMETER_ERROR_K: f64 = 1.0;
 /// Standard deviation of the zero of a run, over the spread of the output.
 const ZERO_ERROR: f64 = 2e-3;
-/// What two runs of one input may differ by besides noise, over the spread of the output.
-const REPEATABILITY: f64 = 1e-3;
 
 /// Columns of the nuisance that are calibrations, gain and zero of sensor, amplifier and monitor: the last ones.
 pub(crate) const CALIBRATIONS: usize = 6;
@@ -55,7 +51,9 @@ impl BenchSimulator<'_> {
                     let white = white_noise(&less(own, run.judged_input()));
                     (white, white.max(MONITOR_ERROR * (self.range.1 - self.range.0)))
                 }
-                ChannelKind::Temperature => (white, white.max(THERMOMETER_ERROR_K)),
+                ChannelKind::Temperature => {
+                    (white, white.max(self.accuracy.thermometer.zero_kelvin))
+                }
                 ChannelKind::Load => (white, (3.0 * white).max(0.3 * variance(own).sqrt())),
             };
             let measured = averaged(own, self.block);
@@ -78,7 +76,7 @@ impl BenchSimulator<'_> {
     /// Part of the structural error of the base model that is in a channel: where a run is compared with the reference run of
     /// its input, no more than two such runs differ by.
     fn structure_part(&self, channel: &Channel, structure: f64) -> f64 {
-        let repeated = REPEATABILITY * self.base.spread;
+        let repeated = self.repeatability * self.base.spread;
         if channel.anchor.is_some() && structure > repeated { repeated / structure } else { 1.0 }
     }
 
@@ -105,7 +103,8 @@ impl BenchSimulator<'_> {
     /// What a channel may move by, in this order: the directions of the base model, the zeros of the runs, and the
     /// calibration of sensor, amplifier and monitor from one session to the next.
     fn nuisance(&self, channel: &Channel, moving: &[DMatrix<f64>], samples: usize) -> DMatrix<f64> {
-        let (number, Accuracy { displacement, amplifier, monitor }) = (channel.run, self.accuracy);
+        let (number, Accuracy { displacement, amplifier, monitor, .. }) =
+            (channel.run, self.accuracy);
         let run = self.runs[number];
         let (plain, input) = (&self.plain()[number], &run.input);
         let directions = moving.first().map_or(0, DMatrix::ncols);

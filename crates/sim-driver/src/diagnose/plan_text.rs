@@ -11,8 +11,8 @@ use serde::Serialize;
 #[serde(transparent)]
 pub struct PlanText(pub Plan);
 
-/// What a diagnosis would say of a cause.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What a diagnosis would say of a cause, the best first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Told {
     Name,
     Class,
@@ -54,9 +54,10 @@ fn words(cause: &PlannedCause, own: &Rehearsal) -> String {
     }
 }
 
-/// What is said of a cause at a size.
+/// What is said of a cause at a size, of the sign that is told worse.
 fn at(cause: &PlannedCause, size: f64) -> Option<&Rehearsal> {
-    cause.rehearsed.iter().find(|said| (said.size - size).abs() < 1e-9)
+    let of_size = cause.rehearsed.iter().filter(|said| (said.size - size).abs() < 1e-9);
+    of_size.max_by_key(|said| told(cause, said))
 }
 
 impl Printable for PlanText {
@@ -78,7 +79,8 @@ impl Printable for PlanText {
         }
         sheet.paragraphs(&format!(
             "Runs: {}; noise {:.2} um. Each is simulated once with nothing missing and once with the cause, as the \
-             engine knows it and with one draw of the noise: a bench will show rather less.",
+             engine knows it and with one draw of the noise: a bench will show rather less. Of a cause with two signs the one that is \
+             told worse is shown.",
             plan.runs.join(", "),
             plan.noise_um
         ));

@@ -41,6 +41,8 @@ pub struct MissingInSome {
     pub confidence: Confidence,
     /// The class of the first cause.
     pub class: Class,
+    /// How sure that class is: confident where it is so in every one of them.
+    pub class_confidence: Confidence,
     /// Parameters of the first cause in each specimen that has it, by the specimen's name.
     pub specimens: BTreeMap<String, BTreeMap<String, ParameterValue>>,
     /// Specimens in which nothing is missing, confidently, with the size from which the first cause would have been seen
@@ -61,6 +63,16 @@ impl Specimens {
                     && own.causes == [first]
             };
             let members: Vec<usize> = shared.findings.iter().map(|place| place.0).collect();
+            let surely = |is: bool| if is { Confidence::Confident } else { Confidence::Tentative };
+            let candidates = &found[members[0]].1.candidates;
+            let class = candidates.iter().find(|own| own.id == first).map(|own| own.class);
+            let class = class.unwrap_or_default();
+            // the class of a diagnosis is that of what it found first
+            let is_sure_of_class = |&(s, place): &(usize, usize)| {
+                let own: &Findings = &findings[s];
+                let found = own.class.zip(own.class_confidence);
+                place == 0 && found == Some((class, Confidence::Confident))
+            };
             let strength = |&s: &usize| {
                 let own = findings[s].parameters.get(first).cloned().unwrap_or_default();
                 (found[s].0.clone(), own)
@@ -71,19 +83,11 @@ impl Specimens {
                 let size = own.would_have_shown.get(first).copied().flatten();
                 size.filter(|_| is_sure).map(|size| (name.clone(), size))
             };
-            let candidates = &found[members[0]].1.candidates;
             MissingInSome {
                 causes: shared.explanations.iter().map(|id| (*id).to_owned()).collect(),
-                confidence: if members.iter().all(|&s| is_sure(&findings[s])) {
-                    Confidence::Confident
-                } else {
-                    Confidence::Tentative
-                },
-                class: candidates
-                    .iter()
-                    .find(|own| own.id == first)
-                    .map(|own| own.class)
-                    .unwrap_or_default(),
+                confidence: surely(members.iter().all(|&s| is_sure(&findings[s]))),
+                class,
+                class_confidence: surely(shared.findings.iter().all(is_sure_of_class)),
                 specimens: members.iter().map(strength).collect(),
                 not_seen_in: found.iter().zip(&findings).filter_map(would_have_shown).collect(),
             }
@@ -112,8 +116,11 @@ impl Printable for Specimens {
                 all if all == count => format!("in all {count} specimens"),
                 some => format!("in {some} of {count} specimens"),
             };
-            let (kind, sure, cause) = (own.class.words(), sure(own.confidence), one_of(&ids));
-            sheet.paragraphs(&format!("Missing {place}: {kind}. The cause ({sure}): {cause}"));
+            let (kind, cause) = (own.class.words(), one_of(&ids));
+            let [kind_sure, cause_sure] = [own.class_confidence, own.confidence].map(sure);
+            sheet.paragraphs(&format!(
+                "Missing {place}: {kind} ({kind_sure}). The cause ({cause_sure}): {cause}"
+            ));
             for (name, parameters) in &own.specimens {
                 let one =
                     |(id, p): (&String, &ParameterValue)| valued(id, p.value, &p.unit, p.ci95);

@@ -147,6 +147,9 @@ fn a_cause_that_specimens_share_is_found_once_and_the_one_without_it_is_told() {
     assert!((a / b - 1.0).abs() > 0.05, "{a}, {b}");
     assert_eq!(lag.confidence, Confidence::Tentative);
     assert!(lag.causes.contains(&"transport-delay".to_owned()), "{lag:?}");
+    // each class is as sure as in the specimens that show it
+    assert_eq!(creep.class_confidence, Confidence::Confident);
+    assert_eq!(Some(lag.class_confidence), Findings::from(&found[3].1).class_confidence);
     assert_eq!(lag.specimens.keys().collect::<Vec<_>>(), ["d"]);
 }
 

@@ -1,4 +1,4 @@
-//! What does not change the physics does not change the verdict: order, names, cutting, repeating, zero, sampling and
+//! What does not change the physics does not change the verdict: order, names, cutting, repeating, zero, unit, sampling and
 //! sign of the records.
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -128,6 +128,45 @@ fn what_changes_no_physics_changes_no_verdict() {
             change(&mut reference);
             let changed = found(&measured, reference);
             let name = format!("{}: {what}", made.answer.hidden);
+            assert_eq!(said(&changed), said(&plain), "{name}");
+            assert!(moved(&plain, &changed).is_empty(), "{name}: {:?}", moved(&plain, &changed));
+        });
+    }
+}
+
+/// Output in mm or nm, input in mV, each with the accuracy in the same unit.
+#[test]
+fn the_unit_of_a_channel_changes_no_verdict() {
+    for (family, seed, deal) in SETS {
+        let made = set(&Request::new(family, seed, deal));
+        let (measured, reference) = (records(&made.measured), records(&made.reference).runs);
+        let plain = found(&measured, reference.clone());
+        [(1e-3, 1.0), (1e3, 1.0), (1.0, 1e3)].par_iter().for_each(|&(output, input)| {
+            let in_unit = |runs: &mut Vec<Record>| {
+                every_output(runs, |y| output * y);
+                for run in runs {
+                    let volts = run.input.iter_mut().chain(run.amplifier.iter_mut().flatten());
+                    volts.for_each(|u| *u *= input);
+                }
+            };
+            let (mut measured, mut reference) = (measured.clone(), reference.clone());
+            in_unit(&mut measured.runs);
+            in_unit(&mut reference);
+            measured.range = (input * measured.range.0, input * measured.range.1);
+            measured.accuracy.displacement.zero_um *= output;
+            measured.accuracy.amplifier.zero_volt *= input;
+            measured.accuracy.monitor.zero_volt *= input;
+            let mut changed = found(&measured, reference);
+            for own in changed.parameters.values_mut().flat_map(|own| own.values_mut()) {
+                let unit = match &*own.unit {
+                    "um" => output,
+                    "V" => input,
+                    "1" => 1.0,
+                    other => panic!("{other} is no unit of these sets"),
+                };
+                own.value /= unit;
+            }
+            let name = format!("{}: {output} um, {input} V", made.answer.hidden);
             assert_eq!(said(&changed), said(&plain), "{name}");
             assert!(moved(&plain, &changed).is_empty(), "{name}: {:?}", moved(&plain, &changed));
         });
