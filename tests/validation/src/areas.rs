@@ -408,6 +408,7 @@ pub const AREAS: &[Area] = &[
             "V-MEAS-23",
             "V-MEAS-24",
             "V-MEAS-25",
+            "V-MEAS-26",
         ],
     },
 ];

@@ -47,6 +47,10 @@ const HEIGHT: f64 = 230.0;
 const LEFT: f64 = 56.0;
 const TOP: f64 = 70.0;
 const APART: f64 = 66.0;
+/// Height of a row of panels with its labels.
+const ROW: f64 = HEIGHT + 76.0;
+/// Most panels side by side.
+const ACROSS: usize = 4;
 
 const STYLE: &str = "\
 <style>
@@ -107,25 +111,26 @@ impl Axis {
 }
 
 impl Panel {
-    fn place(&self, left: f64, [x, y]: [f64; 2]) -> [f64; 2] {
-        [left + WIDTH * self.x.share(x), TOP + HEIGHT * (1.0 - self.y.share(y))]
+    fn place(&self, [left, top]: [f64; 2], [x, y]: [f64; 2]) -> [f64; 2] {
+        [left + WIDTH * self.x.share(x), top + HEIGHT * (1.0 - self.y.share(y))]
     }
 
-    fn draw(&self, left: f64, text: &mut String) {
-        let (right, bottom) = (left + WIDTH, TOP + HEIGHT);
+    fn draw(&self, corner: [f64; 2], text: &mut String) {
+        let [left, top] = corner;
+        let (right, bottom) = (left + WIDTH, top + HEIGHT);
         let _ =
-            writeln!(text, "<text x=\"{left:.1}\" y=\"{:.1}\">{}</text>", TOP - 10.0, self.title);
+            writeln!(text, "<text x=\"{left:.1}\" y=\"{:.1}\">{}</text>", top - 10.0, self.title);
         for value in self.x.marks() {
-            let [x, _] = self.place(left, [value, self.y.ends[0]]);
+            let [x, _] = self.place(corner, [value, self.y.ends[0]]);
             let _ = writeln!(
                 text,
-                "<line x1=\"{x:.1}\" y1=\"{TOP:.1}\" x2=\"{x:.1}\" y2=\"{bottom:.1}\" class=\"cs-grid\"/>\n<text x=\"{x:.1}\" y=\"{:.1}\" class=\"cs-soft cs-mid\">{}</text>",
+                "<line x1=\"{x:.1}\" y1=\"{top:.1}\" x2=\"{x:.1}\" y2=\"{bottom:.1}\" class=\"cs-grid\"/>\n<text x=\"{x:.1}\" y=\"{:.1}\" class=\"cs-soft cs-mid\">{}</text>",
                 bottom + 16.0,
                 self.x.text(value)
             );
         }
         for value in self.y.marks() {
-            let [_, y] = self.place(left, [self.x.ends[0], value]);
+            let [_, y] = self.place(corner, [self.x.ends[0], value]);
             let _ = writeln!(
                 text,
                 "<line x1=\"{left:.1}\" y1=\"{y:.1}\" x2=\"{right:.1}\" y2=\"{y:.1}\" class=\"cs-grid\"/>\n<text x=\"{:.1}\" y=\"{:.1}\" class=\"cs-soft cs-end\">{}</text>",
@@ -141,14 +146,17 @@ impl Panel {
             bottom + 34.0,
             self.x.label
         );
-        let (x, y) = (left - 44.0, TOP + 0.5 * HEIGHT);
+        let (x, y) = (left - 44.0, top + 0.5 * HEIGHT);
         let _ = writeln!(
             text,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" class=\"cs-soft cs-mid\" transform=\"rotate(-90 {x:.1} {y:.1})\">{}</text>",
             self.y.label
         );
         for own in &self.series {
-            own.draw(&own.points.iter().map(|at| self.place(left, *at)).collect::<Vec<_>>(), text);
+            own.draw(
+                &own.points.iter().map(|at| self.place(corner, *at)).collect::<Vec<_>>(),
+                text,
+            );
         }
     }
 }
@@ -183,11 +191,12 @@ impl Series {
     }
 }
 
-/// A figure: its title, the panels side by side, the legend of the first.
+/// A figure: its title, the panels side by side in rows, the legend of the first.
 pub(super) fn drawn(title: &str, panels: &[Panel]) -> String {
-    let count = panels.len() as f64;
-    let width = LEFT + count * WIDTH + (count - 1.0) * APART + 16.0;
-    let height = TOP + HEIGHT + 46.0;
+    let across = panels.len().min(ACROSS) as f64;
+    let rows = panels.len().div_ceil(ACROSS) as f64;
+    let width = LEFT + across * WIDTH + (across - 1.0) * APART + 16.0;
+    let height = TOP + (rows - 1.0) * ROW + HEIGHT + 46.0;
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.0} {height:.0}\" class=\"cs\" role=\"img\" aria-label=\"{title}\">\n<!-- Made by `cargo xtask case-studies`; do not edit. -->\n<title>{title}</title>\n{STYLE}<rect width=\"{width:.0}\" height=\"{height:.0}\" class=\"cs-back\"/>\n<text x=\"8\" y=\"20\" class=\"cs-title\">{title}</text>\n"
     );
@@ -211,7 +220,8 @@ pub(super) fn drawn(title: &str, panels: &[Panel]) -> String {
         x += 38.0 + 6.8 * own.name.len() as f64;
     }
     for (number, own) in panels.iter().enumerate() {
-        own.draw(LEFT + number as f64 * (WIDTH + APART), &mut text);
+        let (column, row) = ((number % ACROSS) as f64, (number / ACROSS) as f64);
+        own.draw([LEFT + column * (WIDTH + APART), TOP + row * ROW], &mut text);
     }
     text + "</svg>\n"
 }

@@ -5,6 +5,7 @@
 
 mod figure;
 mod flap;
+mod flights;
 mod rotors;
 mod stall;
 mod strip;
@@ -55,13 +56,14 @@ enum Teller {
     Simulating(fn(&[Done]) -> Result<Told, XtaskError>),
 }
 
-const STUDIES: [Study; 6] = [
+const STUDIES: [Study; 7] = [
     flap::STUDY,
     strip::STUDY,
     stall::STUDY,
     rotors::INFLOW,
     rotors::HYSTERESIS,
     rotors::LEVEL_FLIGHT,
+    flights::STUDY,
 ];
 
 /// A diagnosis that was done.

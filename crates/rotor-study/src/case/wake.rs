@@ -130,7 +130,7 @@ section! {
         /// than 48 ask for `time_gauss_points` of 12 or 16.
         pub azimuths: Option<usize> = None, Rule("8 to 144, a multiple of the blades"), "", "";
         /// Azimuths at which the sections feel the wake, its geometry interpolated to them; left out: `azimuths`. 180 for
-        /// passages of vortices, with 8 `time_elements` and 30 `time_gauss_points`.
+        /// passages of vortices, with 16 `time_elements` of 15 `time_gauss_points`.
         #[serde(skip_serializing_if = "is_default")]
         pub section_azimuths: Option<usize> = None, Rule("a multiple of `azimuths`, at most 360"), "", "";
         /// Free turns of the rolled-up vortices; by the preset 4, 2 if fast.

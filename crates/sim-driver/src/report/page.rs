@@ -149,7 +149,8 @@ fn disk_maps(charts: &mut Charts, disk: &DiskLoads) -> Markup {
         section {
             h2 { "Over the disk" }
             p { "Flaps at rest. Seen from above, flight up the page: azimuth 0 over the tail is below, 90 deg to "
-                "the right. Lift normal to the chord up positive, induced velocity down positive." }
+                "the right. C_n M^2: force normal to the chord per length, up positive, over half of air density, chord "
+                "and the square of the speed of sound. Induced velocity down positive." }
             div.grid.wide {
                 @for (title, values, unit) in maps {
                     @let [low, high] = extremes(values);

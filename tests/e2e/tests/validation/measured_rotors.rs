@@ -7,7 +7,9 @@ use rotor_study::{
     CURVE_AZIMUTHS, CurveComparison, ModesQuestion, Quantity, TrimmedRotor, VortexComparison,
     compare_curves, compare_vortices, computed_curves, rotating_modes,
 };
-use sim_driver::case::{BodyValues, Case, FreeWakeValues, InflowChoice, LoadedCase, load_case};
+use sim_driver::case::{
+    BodyValues, Case, FreeWakeValues, InflowChoice, LoadedCase, TrimValues, load_case,
+};
 use sim_driver::results::MeasuredPart;
 use validation::{Check, Failure, root, row, shared, too_few};
 
@@ -30,15 +32,15 @@ pub(crate) const ROWS: &[Check] = &[
         .at_most(0.010, || Ok(baseline()?.curve(Quantity::NormalM2)?.from_1.rms)),
     row("V-MEAS-04", "the same, near wake of 360 in place of 180 deg: correlation", "-")
         .against(HART)
-        .near(0.755, 0.03, || descent(360.0))
+        .near(0.767, 0.03, || descent(360.0))
         .long(),
     row("V-MEAS-13", "the same, near wake of 90 deg: correlation", "-")
         .against(HART)
-        .near(0.764, 0.03, || descent(90.0))
+        .near(0.746, 0.03, || descent(90.0))
         .long(),
     row("V-MEAS-05", "the same, near wake of 30 deg: correlation", "-")
         .against(HART)
-        .near(0.434, 0.05, || descent(30.0))
+        .near(0.431, 0.05, || descent(30.0))
         .long(),
     row(
         "V-MEAS-14",
@@ -46,11 +48,11 @@ pub(crate) const ROWS: &[Check] = &[
         "-",
     )
     .against(HART)
-    .near(0.866, 0.03, || Ok(coarse()?.curve(Quantity::NormalM2)?.from_1.correlation))
+    .near(0.876, 0.03, || Ok(coarse()?.curve(Quantity::NormalM2)?.from_1.correlation))
     .long(),
-    row("V-MEAS-06", "the same: tip deflection, rms distance; shown, the bar is 0.35", "% R")
+    row("V-MEAS-06", "the same: tip deflection, rms distance", "% R")
         .against(HART)
-        .near(0.42, 0.03, || baseline()?.tip(Quantity::TipFlap)),
+        .at_most(0.35, || baseline()?.tip(Quantity::TipFlap)),
     row(
         "V-MEAS-07",
         "the same: elastic twist of the tip, rms distance; shown, the bar is 0.35",
@@ -60,22 +62,22 @@ pub(crate) const ROWS: &[Check] = &[
     .near(0.48, 0.03, || baseline()?.tip(Quantity::TipTwist)),
     row(
         "V-MEAS-08",
-        "the same: centres of tip vortices, vertical rms distance; shown, the bar is 3.0",
+        "the same: centres of tip vortices, vertical rms distance",
         "% R",
     )
     .against(HART)
-    .near(2.89, 0.15, || vertical_distance(baseline()?)),
+    .at_most(3.0, || vertical_distance(baseline()?)),
     row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
         .at_least(0.85, || Ok(level()?.curve(Quantity::Normal)?.from_1.correlation)),
     row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-")
         .against(HELINOVI)
-        .near(0.48, 0.05, || Ok(level()?.curve(Quantity::Normal)?.from_2.correlation)),
+        .near(0.481, 0.05, || Ok(level()?.curve(Quantity::Normal)?.from_2.correlation)),
     row("V-MEAS-11", "HeliNOVI, climb: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
         .at_least(0.85, || Ok(climb()?.curve(Quantity::Normal)?.from_1.correlation)),
     row("V-MEAS-12", "the same, 2 to 6/rev; shown", "-").against(HELINOVI).near(
-        0.575,
+        0.519,
         0.05,
         || Ok(climb()?.curve(Quantity::Normal)?.from_2.correlation),
     ),
@@ -88,7 +90,7 @@ pub(crate) const ROWS: &[Check] = &[
         .long(),
     row("V-MEAS-16", "climb, 2 to 6/rev, near wake of 360 in place of 180 deg; shown", "-")
         .against(HELINOVI)
-        .near(0.765, 0.05, || {
+        .near(0.745, 0.05, || {
             let flown = flown("helinovi_climb.ron", |case| in_wake(case, 360.0))?;
             Ok(flown.curve(Quantity::Normal)?.from_2.correlation)
         })
@@ -115,24 +117,35 @@ pub(crate) const ROWS: &[Check] = &[
         .at_most(20.0, || Ok(change(minimum_noise()?, Quantity::TipTwist)?.phase_deg)),
     row("V-MEAS-22", "HART II, baseline, without the body below the hub: correlation; shown", "-")
         .against(HART)
-        .near(0.777, 0.02, || Ok(shared(&BODILESS)?.curve(Quantity::NormalM2)?.from_1.correlation)),
+        .near(0.775, 0.02, || Ok(shared(&BODILESS)?.curve(Quantity::NormalM2)?.from_1.correlation)),
     row("V-MEAS-23", "the same: centres of tip vortices, vertical rms distance; shown", "% R")
         .against(HART)
-        .near(3.32, 0.15, || vertical_distance(shared(&BODILESS)?)),
+        .near(3.35, 0.15, || vertical_distance(shared(&BODILESS)?)),
     row(
         "V-MEAS-24",
         "HeliNOVI, level flight, without the body: 2 to 6/rev, correlation; shown",
         "-",
     )
     .against(HELINOVI)
-    .near(0.423, 0.03, || {
+    .near(0.426, 0.03, || {
         Ok(without_body("helinovi_level.ron")?.curve(Quantity::Normal)?.from_2.correlation)
     }),
     row("V-MEAS-25", "climb, without the body: 2 to 6/rev, correlation; shown", "-")
         .against(HELINOVI)
-        .near(0.565, 0.008, || {
+        .near(0.504, 0.008, || {
             Ok(without_body("helinovi_climb.ron")?.curve(Quantity::Normal)?.from_2.correlation)
         }),
+    row("V-MEAS-26", "HART II, baseline, roll moment as given: tip deflection, rms; shown", "% R")
+        .against(HART)
+        .near(0.42, 0.03, || {
+            flown("hart_ii_bl.ron", |case| {
+                if let TrimValues::WindTunnel(own) = &mut case.trim {
+                    own.hub_mx_n_m = -own.hub_mx_n_m;
+                }
+            })?
+            .tip(Quantity::TipFlap)
+        })
+        .long(),
 ];
 
 /// A rotor trimmed in its free wake, beside what was measured of it.

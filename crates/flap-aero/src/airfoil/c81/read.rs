@@ -30,7 +30,8 @@ impl<'a> Lines<'a> {
 
 pub(super) fn airfoil(text: &str) -> Result<C81Airfoil, AeroError> {
     let mut lines = Lines { lines: text.lines().enumerate(), line: 1 };
-    let expected = "a first line with name (30 columns) and six counts (2 columns each)";
+    let expected =
+        "a first line with name (30 columns) and six counts (2 columns each), no lines before it";
     let head = lines.next_filled().ok_or_else(|| lines.fault(1, expected))?;
     let (name, counts) = header(head).ok_or_else(|| lines.fault(NAME + 1, expected))?;
     let [ml, al, md, ad, mm, am] = counts;
