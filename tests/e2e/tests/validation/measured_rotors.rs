@@ -60,19 +60,17 @@ pub(crate) const ROWS: &[Check] = &[
     )
     .against(HART)
     .near(0.48, 0.03, || baseline()?.tip(Quantity::TipTwist)),
-    row(
-        "V-MEAS-08",
-        "the same: centres of tip vortices, vertical rms distance",
-        "% R",
-    )
-    .against(HART)
-    .at_most(3.0, || vertical_distance(baseline()?)),
+    row("V-MEAS-08", "the same: centres of tip vortices, vertical rms distance", "% R")
+        .against(HART)
+        .at_most(3.0, || vertical_distance(baseline()?)),
     row("V-MEAS-09", "HeliNOVI, level flight: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
         .at_least(0.85, || Ok(level()?.curve(Quantity::Normal)?.from_1.correlation)),
-    row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-")
-        .against(HELINOVI)
-        .near(0.481, 0.05, || Ok(level()?.curve(Quantity::Normal)?.from_2.correlation)),
+    row("V-MEAS-10", "the same, 2 to 6/rev; shown", "-").against(HELINOVI).near(
+        0.481,
+        0.05,
+        || Ok(level()?.curve(Quantity::Normal)?.from_2.correlation),
+    ),
     row("V-MEAS-11", "HeliNOVI, climb: C_N at 0.87 R, 1 to 6/rev, correlation", "-")
         .against(HELINOVI)
         .at_least(0.85, || Ok(climb()?.curve(Quantity::Normal)?.from_1.correlation)),
