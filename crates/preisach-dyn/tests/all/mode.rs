@@ -234,8 +234,7 @@ fn around() -> Vec<BenchRecord> {
 
 fn compared(records: &[BenchRecord], families: &[Family]) -> ModelComparison {
     let settings = Settings::default();
-    let candidates =
-        Candidates { families: families.to_vec(), orders: Vec::new(), ..Candidates::default() };
+    let candidates = Candidates { families: families.to_vec(), orders: Vec::new() };
     compare_models(records, &settings, &candidates, &|| ()).unwrap()
 }
 

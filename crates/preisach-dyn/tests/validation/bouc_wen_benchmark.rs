@@ -187,8 +187,7 @@ static TABLE: LazyLock<Result<ModelComparison, Failure>> = LazyLock::new(|| {
         zero: FlapZero::AsRecorded,
         ..Settings::default()
     };
-    let candidates =
-        Candidates { families: Family::ALL.to_vec(), orders: Vec::new(), ..Candidates::default() };
+    let candidates = Candidates { families: Family::ALL.to_vec(), orders: Vec::new() };
     Ok(compare_models(&records, &settings, &candidates, &|| ())?)
 });
 
