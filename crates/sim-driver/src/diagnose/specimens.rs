@@ -66,12 +66,10 @@ impl Specimens {
             let surely = |is: bool| if is { Confidence::Confident } else { Confidence::Tentative };
             let candidates = &found[members[0]].1.candidates;
             let class = candidates.iter().find(|own| own.id == first).map(|own| own.class);
-            let class = class.unwrap_or_default();
             // the class of a diagnosis is that of what it found first
             let is_sure_of_class = |&(s, place): &(usize, usize)| {
-                let own: &Findings = &findings[s];
-                let found = own.class.zip(own.class_confidence);
-                place == 0 && found == Some((class, Confidence::Confident))
+                let own = (findings[s].class, findings[s].class_confidence);
+                place == 0 && own == (class, Some(Confidence::Confident))
             };
             let strength = |&s: &usize| {
                 let own = findings[s].parameters.get(first).cloned().unwrap_or_default();
@@ -86,7 +84,7 @@ impl Specimens {
             MissingInSome {
                 causes: shared.explanations.iter().map(|id| (*id).to_owned()).collect(),
                 confidence: surely(members.iter().all(|&s| is_sure(&findings[s]))),
-                class,
+                class: class.unwrap_or_default(),
                 class_confidence: surely(shared.findings.iter().all(is_sure_of_class)),
                 specimens: members.iter().map(strength).collect(),
                 not_seen_in: found.iter().zip(&findings).filter_map(would_have_shown).collect(),
