@@ -1,7 +1,7 @@
 //! Control in time along a flight whose advance ratio and thrust change and whose flaps may fail.
 //!
 //! - *Rotor* ([`RotorPath`]): trims at knots of advance ratio, and at a second thrust; loads and their answer to the flaps are
-//!   linearised there and interpolated in between. Every revolution is a steady state.
+//!   linearised there and interpolated linearly in between. Every revolution is a steady state.
 //! - *Flaps* ([`FlapMarch`]): every actuator is marched sample by sample through its hysteresis, all harmonics at once, its
 //!   bias slowly led so that the mean flap angle vanishes. A flap may have an actuator of its own ([`OwnActuator`]).
 //! - *Blades* ([`RotorPath::with_blades`]): what blades that are unlike the rest, or move a flap otherwise, bring to the hub, at

@@ -8,9 +8,6 @@ use rotor_study::case::Case;
 use rotor_study::{FlapAuthority, HUB_OUTPUTS, TrimmedRotor};
 use std::collections::BTreeMap;
 
-/// Knots that interpolate the rotor over the advance ratio.
-const SMOOTH_KNOTS: usize = 4;
-
 /// Where on its path a rotor is.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct FlightState {
@@ -24,9 +21,9 @@ pub struct FlightState {
 ///
 /// ```text
 /// Z(mu, s, delta) = sum over the knots about (mu, s) of  w_k ( Z0_k + G_k delta ),
-///                   w cubic in mu over the four nearest knots, linear in the share s of the step, held beyond the ends
+///                   w linear in mu and in the share s of the step, held beyond the ends
 /// ```
-/// Truth is this rotor, linear in the motion of the flaps. Two knots are interpolated linearly, three by a parabola. Blades that are not as the others ([`Self::with_blades`]) add what
+/// Truth is this rotor, linear in the motion of the flaps. Blades that are not as the others ([`Self::with_blades`]) add what
 /// they do otherwise.
 #[derive(Debug, Clone)]
 pub struct RotorPath {
@@ -234,16 +231,16 @@ impl RotorPath {
     /// The knots about a state: row and place in it, and the weight.
     fn about(&self, state: FlightState) -> impl Iterator<Item = ((usize, usize), f64)> + use<> {
         let share = if self.rows.len() > 1 { state.thrust_share } else { 0.0 };
-        let columns = smooth_weights(&self.advance_ratios, state.advance_ratio);
+        let columns = self.weights(state.advance_ratio);
         let rows = [1.0 - share, share].into_iter().take(self.rows.len()).enumerate();
         rows.flat_map(move |(row, of_row)| {
-            columns.clone().map(move |(k, of_column)| ((row, k), of_row * of_column))
+            columns.map(|(k, of_column)| ((row, k), of_row * of_column))
         })
-        .filter(|(_, weight)| *weight != 0.0)
+        .filter(|(_, weight)| *weight > 0.0)
     }
 
-    /// The two knots about an advance ratio with their weights, for the T of a schedule.
-    pub(crate) fn linear_weights(&self, advance_ratio: f64) -> [(usize, f64); 2] {
+    /// The two knots about an advance ratio with their weights.
+    pub(crate) fn weights(&self, advance_ratio: f64) -> [(usize, f64); 2] {
         let knots = &self.advance_ratios;
         let above = knots.partition_point(|knot| *knot < advance_ratio);
         if above == 0 || above == knots.len() {
@@ -254,25 +251,6 @@ impl RotorPath {
         let share = (advance_ratio - low) / (high - low);
         [(above - 1, 1.0 - share), (above, share)]
     }
-}
-
-/// The knots nearest to an advance ratio, four where there are as many, with the weights of the polynomial through them (Lagrange):
-/// exact at a knot, held beyond the ends.
-fn smooth_weights(
-    knots: &[f64],
-    advance_ratio: f64,
-) -> impl Iterator<Item = (usize, f64)> + Clone + use<> {
-    let here = advance_ratio.clamp(knots[0], knots[knots.len() - 1]);
-    let count = knots.len().min(SMOOTH_KNOTS);
-    let above = knots.partition_point(|knot| *knot < here);
-    let start = above.saturating_sub(SMOOTH_KNOTS / 2).min(knots.len() - count);
-    let near = &knots[start..start + count];
-    let mut weights = [0.0; SMOOTH_KNOTS];
-    for (k, (weight, own)) in weights.iter_mut().zip(near).enumerate() {
-        let others = near.iter().enumerate().filter(|(j, _)| *j != k);
-        *weight = others.map(|(_, other)| (here - other) / (own - other)).product();
-    }
-    weights.into_iter().take(count).enumerate().map(move |(k, weight)| (start + k, weight))
 }
 
 fn authority(advance_ratio: f64, rotor: &TrimmedRotor) -> Result<&FlapAuthority, FlightError> {
@@ -295,31 +273,4 @@ fn trims(case: &Case, advance_ratios: &[f64]) -> Result<Vec<TrimmedRotor>, Fligh
     let each = rotors.par_iter().zip(advance_ratios);
     each.map(|(rotor, &at)| authority(at, rotor).map(|_| ())).collect::<Result<Vec<()>, _>>()?;
     Ok(rotors)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A cubic over the advance ratio is met everywhere from four knots on, a parabola by three, a line by two; beyond the ends the
-    /// knot there is held.
-    #[test]
-    fn polynomials_are_interpolated_exactly() {
-        let knots = [0.10, 0.14, 0.15, 0.21, 0.26, 0.30];
-        let of = |degree: i32, mu: f64| (1.0 - 3.0 * mu) * (10.0 * mu - 2.0).powi(degree - 1);
-        for (count, degree) in [(1, 0), (2, 1), (3, 2), (4, 3), (5, 3), (6, 3)] {
-            let knots = &knots[..count];
-            let value = |mu: f64| if degree == 0 { 1.0 } else { of(degree, mu) };
-            let found = |mu: f64| -> f64 {
-                smooth_weights(knots, mu).map(|(k, weight)| weight * value(knots[k])).sum()
-            };
-            let (low, high) = (knots[0], knots[count - 1]);
-            for step in 0..=40 {
-                let mu = low + (high - low) * f64::from(step) / 40.0;
-                assert!((found(mu) - value(mu)).abs() < 1e-12, "{count} {mu}");
-            }
-            assert!((found(low - 0.1) - value(low)).abs() < 1e-15);
-            assert!((found(high + 0.1) - value(high)).abs() < 1e-15);
-        }
-    }
 }

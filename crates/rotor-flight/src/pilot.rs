@@ -80,7 +80,7 @@ impl Pilot {
         match self {
             Self::Fixed(relaxed, t) => relaxed.step(t, outputs).map(|_| ())?,
             Self::Scheduled(relaxed, knots) => {
-                let [(low, share), (high, rest)] = path.linear_weights(advance_ratio);
+                let [(low, share), (high, rest)] = path.weights(advance_ratio);
                 let pairs = knots[low].iter().zip(&knots[high]);
                 let columns: Vec<Vec<f64>> = pairs
                     .map(|(a, b)| a.iter().zip(b).map(|(a, b)| share * a + rest * b).collect())

@@ -384,8 +384,7 @@ impl Controlled {
             load_weights,
             effort_weight,
             rate_weight: study.values.rate_weight,
-            // what has failed is known; what is left is counted on
-            flap_survival: 1.0,
+            flap_survival: 0.01 * study.values.flap_survival_percent,
             gain: study.values.gain,
             amplitude_limit_volt: (0..layout.pairs()).map(limit).collect(),
             rate_limit_volt: study.values.rate_limit_volt,
