@@ -56,7 +56,7 @@ pub(super) fn sized(
         vec![[first.low, first.high]]
     };
     let mut found = Vec::new();
-    for [from, to] in sides.into_iter().filter(|[from, to]| from != to) {
+    for [from, to] in sides.into_iter().filter(|[from, to]| (from - to).abs() > 0.0) {
         let [from, to] = [from, to].map(|end| first.coordinate(end));
         let place = |k: usize| first.value(from + (to - from) * k as f64 / (PLACES - 1) as f64);
         let shares: Vec<f64> = (0..PLACES).map(|k| share(place(k))).collect::<Result<_, _>>()?;
