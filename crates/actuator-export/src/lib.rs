@@ -6,7 +6,6 @@
 //! | the files of one language | [`export`] |
 //! | the monitor of a named cause: residual, amount, threshold | [`Monitor`], [`export_monitor`] |
 //! | what they leave out or do only nearly | [`remarks()`] |
-//! | what a step costs | [`timing_program`], [`timed_command`] |
 //! | what cannot be exported, with the remedy | [`ExportError`] |
 //! | texts of code and JSON, for other exporters | [`Library`], [`filled`], [`wrapped`], [`check_name`], [`Json`] |
 //!
@@ -25,7 +24,6 @@ mod plan;
 mod remarks;
 mod stages;
 mod targets;
-mod timing;
 
 pub use constant::{number, wrapped};
 pub use error::ExportError;
@@ -34,7 +32,6 @@ pub use library::{Library, filled, prefixed};
 pub use monitor::{Monitor, Seen, Watched, export_monitor, without_stages};
 pub use name::check as check_name;
 pub use remarks::remarks;
-pub use timing::{timed_command, timing_program};
 
 use plan::Plan;
 use preisach_dyn::ActuatorModel;
