@@ -18,6 +18,8 @@ pub(crate) struct Law {
     pub(crate) functions: Vec<&'static str>,
     /// Whether the inverse has to guess the rate to come.
     pub(crate) guesses_rate: bool,
+    /// Whether the output rises with the voltage in straight pieces, whatever was before.
+    pub(crate) rises: bool,
 }
 
 impl Law {
@@ -34,6 +36,7 @@ impl Law {
                 memory: "linear.type",
                 functions: vec!["linear.functions"],
                 guesses_rate: false,
+                rises: false,
             },
             ActuatorLaw::StaticPreisach(law) => statics(law),
             ActuatorLaw::DynamicPreisach(law) => dynamics(law.parameters(), time_step_s),
@@ -82,6 +85,7 @@ fn statics(law: &StaticPreisach) -> Law {
         memory: "plays.type",
         functions: vec!["plays.plays", "plays.functions"],
         guesses_rate: false,
+        rises: law.map().nodes.iter().flat_map(|row| row.windows(2)).all(|own| own[0] <= own[1]),
     }
 }
 
@@ -128,6 +132,7 @@ fn dynamics(p: &DynamicParameters, time_step_s: f64) -> Law {
         memory: "dynamic.type",
         functions: vec!["plays.plays", "dynamic.functions"],
         guesses_rate: false,
+        rises: false,
     }
 }
 
@@ -195,6 +200,7 @@ fn prandtl(p: &PrandtlParameters) -> Law {
         memory: "prandtl.type",
         functions: vec![curve, "prandtl.functions"],
         guesses_rate: p.threshold_growth_s > 0.0,
+        rises: false,
     }
 }
 
@@ -229,6 +235,7 @@ fn bouc_wen(p: &BoucWenParameters) -> Law {
         memory: "bouc_wen.type",
         functions: vec![curve, exponent, "bouc_wen.functions"],
         guesses_rate: false,
+        rises: false,
     }
 }
 
@@ -261,5 +268,6 @@ fn stops(p: &StopParameters) -> Law {
         memory: "stops.type",
         functions: vec!["stops.functions"],
         guesses_rate: false,
+        rises: false,
     }
 }

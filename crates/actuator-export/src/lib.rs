@@ -6,6 +6,7 @@
 //! | the files of one language | [`export`] |
 //! | the monitor of a named cause: residual, amount, threshold | [`Monitor`], [`export_monitor`] |
 //! | what they leave out or do only nearly | [`remarks()`] |
+//! | what a step costs | [`timing_program`], [`timed_command`] |
 //! | what cannot be exported, with the remedy | [`ExportError`] |
 //! | texts of code and JSON, for other exporters | [`Library`], [`filled`], [`wrapped`], [`check_name`], [`Json`] |
 //!
@@ -24,6 +25,7 @@ mod plan;
 mod remarks;
 mod stages;
 mod targets;
+mod timing;
 
 pub use constant::{number, wrapped};
 pub use error::ExportError;
@@ -32,6 +34,7 @@ pub use library::{Library, filled, prefixed};
 pub use monitor::{Monitor, Seen, Watched, export_monitor, without_stages};
 pub use name::check as check_name;
 pub use remarks::remarks;
+pub use timing::{timed_command, timing_program};
 
 use plan::Plan;
 use preisach_dyn::ActuatorModel;

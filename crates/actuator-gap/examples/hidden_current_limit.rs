@@ -1,10 +1,6 @@
 //! A bench with an effect that its reference runs do not have: which cause is named, and how large?
 //!
 //! The actuator is a Preisach model; on the measured runs its amplifier can deliver a limited current.
-//!
-//! ```text
-//! cargo run --release -p actuator-gap --example hidden_current_limit
-//! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
 use actuator_gap::{Question, Record, Records, diagnose};
@@ -22,12 +18,8 @@ const PLANTED_SLEW_RATE: f64 = 4000.0;
 
 /// A multisine from 1 to 31 Hz about the bias, V.
 fn command(amplitude_volt: f64) -> Vec<f64> {
-    let wave = |t: f64| -> f64 {
-        [1.0, 3.0, 7.0, 13.0, 19.0, 31.0]
-            .iter()
-            .map(|f: &f64| (std::f64::consts::TAU * f * t + f * f).sin())
-            .sum()
-    };
+    let tone = |t: f64, hz: f64| (std::f64::consts::TAU * hz * t + hz * hz).sin();
+    let wave = |t| [1.0, 3.0, 7.0, 13.0, 19.0, 31.0].map(|hz| tone(t, hz)).iter().sum::<f64>();
     (0..6000).map(|i| 65.0 + amplitude_volt / 6.0 * wave(f64::from(i) * STEP_S)).collect()
 }
 
@@ -35,12 +27,10 @@ fn run(id: &str, is_reference: bool, amplitude_volt: f64) -> Result<Record, Prei
     let grid = PreisachGrid::new(VoltageRange::amplified_stack(), 12)?;
     let rises: Vec<Vec<f64>> =
         (0..12).map(|play| vec![if play == 0 { 1.2 } else { 0.06 }; 12 - play]).collect();
-    let law = ActuatorLaw::StaticPreisach(StaticPreisach::new(
-        grid,
-        PlayMap::from_rises(&grid, 0.0, &rises)?,
-    )?);
+    let law = StaticPreisach::new(grid, PlayMap::from_rises(&grid, 0.0, &rises)?)?;
     let calibration = Calibration { deg_per_um: DEG_PER_UM, zero_um: 0.0 };
-    let mut actuator = ActuatorModel::new(law, grid.range(), calibration);
+    let mut actuator =
+        ActuatorModel::new(ActuatorLaw::StaticPreisach(law), grid.range(), calibration);
     if !is_reference {
         let limit = CurrentLimit { slew_rate_volt_per_s: PLANTED_SLEW_RATE };
         actuator.amplifier = vec![AmplifierStage::CurrentLimit(limit)];
@@ -54,6 +44,9 @@ fn run(id: &str, is_reference: bool, amplitude_volt: f64) -> Result<Record, Prei
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let runs = [("large", 80.0), ("middle", 55.0), ("small", 30.0)]
+        .map(|(id, volt)| [run(&format!("reference, {id}"), true, volt), run(id, false, volt)]);
+    let runs = runs.into_iter().flatten().collect::<Result<_, _>>()?;
     let records = Records {
         title: "a planted current limit".into(),
         folder: "none".into(),
@@ -66,13 +59,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         accuracy: Accuracy::default(),
         is_bench: true,
         content_hash: String::new(),
-        runs: vec![
-            run("reference, large", true, 80.0)?,
-            run("reference, middle", true, 55.0)?,
-            run("reference, small", true, 30.0)?,
-            run("large", false, 80.0)?,
-            run("small", false, 30.0)?,
-        ],
+        runs,
     };
     let found = Findings::from(&diagnose(&records, &Question::default())?);
     println!("verdict: {:?}, {:?}", found.verdict, found.confidence);

@@ -1,6 +1,6 @@
 //! What records of one set show beside one another: another sign, another gain, a limit that only some reach.
 
-use crate::glance::Glance;
+use crate::glance::{Glance, OF_BUTTERFLY};
 use crate::identification::records;
 use measured_data::{Channel, DataSet};
 use preisach_dyn::identify::{Channel as Side, Finding, Subject};
@@ -32,6 +32,8 @@ pub fn glances(data: &DataSet) -> (Vec<Glance>, Subject<'static>) {
 /// another rests.
 pub fn compared(glances: &[Glance], subject: Subject<'_>) -> Vec<String> {
     let mut said = Vec::from_iter(of_sign(glances));
+    let butterflies = glances.iter().filter(|glance| glance.is_butterfly);
+    said.extend(butterflies.map(|glance| format!("record {}: {OF_BUTTERFLY}", glance.id)));
     said.extend(of_gain(glances, subject));
     said.extend(of_clips(glances, subject));
     said

@@ -4,6 +4,7 @@ use measured_data::limits;
 use preisach_dyn::identify::{BenchRecord, Drive, Finding, SplitRule, Subject, Waveform};
 use rotor_base::{mean_square, rests, significant, wrap_degrees};
 use serde::Serialize;
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 /// One record at a glance: what its command does, how the output follows, and what is suspect.
@@ -31,6 +32,8 @@ pub struct Glance {
     pub duration_s: f64,
     /// Smallest and largest output, in its unit.
     pub output: (f64, f64),
+    /// Whether the output runs through two cycles in each one of the command.
+    pub is_butterfly: bool,
     /// What identification would say of it alone.
     pub findings: Vec<Finding>,
 }
@@ -68,6 +71,7 @@ impl Glance {
             rests_s: resting.iter().map(|rest| rest.len() as f64 * step_s).collect(),
             duration_s: samples.len() as f64 * step_s,
             output: limits(&record.output_deg[samples]),
+            is_butterfly: is_butterfly(record, &drive),
             findings: record.suspicions(is_slow),
         }
     }
@@ -105,6 +109,30 @@ impl Glance {
         format!("{line}; {} s", significant(self.duration_s, 4))
     }
 }
+
+/// Whether the output has twice the frequency of the command, over its steady cycles: the second harmonic exceeds the
+/// first, of a command in which it is small. A ceramic does so that is driven through its coercive field.
+pub(crate) fn is_butterfly(record: &BenchRecord, drive: &Drive) -> bool {
+    let per_sample = TAU * drive.base_hz * record.time_step_s;
+    let size = |values: &[f64], order: f64| {
+        let parts = drive.steady.clone().map(|i| {
+            let (sin, cos) = (order * per_sample * i as f64).sin_cos();
+            [values[i] * cos, values[i] * sin]
+        });
+        let [a, b] = parts.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+        a.hypot(b)
+    };
+    let over = |values: &[f64]| {
+        let mean = drive.steady.clone().map(|i| values[i]).sum::<f64>() / drive.steady.len() as f64;
+        let about: Vec<f64> = values.iter().map(|value| value - mean).collect();
+        size(&about, 2.0) / size(&about, 1.0)
+    };
+    let is_simple = drive.is_periodic() && drive.strongest_harmonic == 1;
+    is_simple && over(&record.voltage_volt) < 0.1 && over(&record.output_deg) > 1.0
+}
+
+/// What to do with a butterfly.
+pub(crate) const OF_BUTTERFLY: &str = "the output runs through two cycles in each cycle of the input: a butterfly, as of a ceramic driven through its coercive field. No model here holds one: in all of them the output rises with the input. Record one wing of it, between the turning points of the output";
 
 /// The rests of a command that are no part of its cycles, as a cut top is, or half a square wave.
 fn outside_cycles(command: &[f64], drive: &Drive, record: &BenchRecord) -> Vec<Range<usize>> {

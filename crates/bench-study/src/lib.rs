@@ -11,11 +11,13 @@
 //! | drift of their instrument, taken off | [`drift`] |
 //! | their FORC diagram | [`diagram`](mod@diagram) |
 //! | actuator files: read with places, written, what is unlikely about them | [`stored`] |
+//! | what `hhc predict` and `hhc invert` show | [`use_text`], [`samples_csv`] |
 //! | tables of the figures, for any plotting program | [`figures`] |
 //! | reversal curves within records, and their FORC diagram | [`reversals`] |
 //! | spectra of what a model leaves of its records | [`spectra`] |
 //! | the same as pictures on one page | [`page`] |
 
+mod actuator_use;
 pub mod any_data;
 mod beside;
 pub mod curves;
@@ -31,6 +33,7 @@ pub mod reversals;
 pub mod spectra;
 pub mod stored;
 
+pub use actuator_use::{samples_csv, use_text};
 pub use beside::{compared, glances};
 pub use error::BenchError;
 pub use glance::Glance;

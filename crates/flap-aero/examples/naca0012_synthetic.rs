@@ -59,8 +59,7 @@ fn coefficients(degrees: f64, mach: f64) -> Result<[f64; 3], AeroError> {
     Ok([normal * cos + chord * sin, drag, moment].map(|c| (1e4 * c).round() / 1e4))
 }
 
-/// The aerofoil, as its file holds it.
-fn airfoil() -> Result<C81Airfoil, AeroError> {
+fn main() -> Result<(), AeroError> {
     let angles = incidences_deg();
     let mut values = [const { Vec::new() }; 3];
     for degrees in &angles {
@@ -73,12 +72,7 @@ fn airfoil() -> Result<C81Airfoil, AeroError> {
     let table = |values: Vec<f64>| C81Table::new(MACHS.to_vec(), angles.clone(), values);
     let [lift, drag, moment] = values;
     let name = "NACA 0012 SYNTHETIC, NOT MEAS".to_owned();
-    let airfoil =
-        C81Airfoil { name, lift: table(lift)?, drag: table(drag)?, moment: table(moment)? };
-    Ok(airfoil.rounded())
-}
-
-fn main() -> Result<(), AeroError> {
-    print!("{}", airfoil()?.write()?);
+    let own = C81Airfoil { name, lift: table(lift)?, drag: table(drag)?, moment: table(moment)? };
+    print!("{}", own.rounded().write()?);
     Ok(())
 }

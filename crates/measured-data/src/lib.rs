@@ -24,9 +24,10 @@ pub use dataset::{
 };
 pub use error::DataError;
 pub use files::{
-    Change, Embedded, Folder, RonFile, RonIndex, Source, default_model_file, open_reader, read_ron,
-    refuse_input, refuse_inside, refuse_other_kind, refuse_other_text, refuse_unwritable,
-    remove_own, ron_text, with_field_moved, write_atomic, write_folder, write_new,
+    Change, Embedded, Folder, RonFile, RonIndex, Source, default_model_file, distinct_names,
+    open_reader, read_ron, refuse_foreign, refuse_input, refuse_inside, refuse_other_kind,
+    refuse_other_text, refuse_unwritable, remove_own, ron_text, with_field_moved, write_atomic,
+    write_folder, write_new,
 };
 pub use tables::{
     Channel, ChannelFile, Channels, ColumnTable, Dimension, EvenRecord, MeasuredTable, PointCsv,

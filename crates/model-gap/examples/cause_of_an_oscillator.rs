@@ -1,10 +1,5 @@
 //! A simulator of one's own, asked what it lacks: a mass on a spring, shaken, read as amplitudes over the frequency.
-//!
 //! The kind says what is read of a model, a cause is where it enters. What was "measured" has a spring 10 % softer.
-//!
-//! ```text
-//! cargo run -p model-gap --example cause_of_an_oscillator
-//! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it finds")]
 
 use model_gap::points::{
@@ -12,18 +7,16 @@ use model_gap::points::{
 };
 use model_gap::{GapError, SplitMix};
 
-/// A mass of 1 kg: spring, N/m, damper, N s/m, gain of the sensor.
+/// A mass of 1 kg: spring, N/m, damper, N s/m.
 #[derive(Clone, Copy)]
 struct Oscillator {
     spring: f64,
     damper: f64,
-    gain: f64,
 }
-
-type Cause = PointCause<Oscillator>;
 
 /// Cosine and sine under a force of 1 N at some frequencies, rad/s.
 struct Shaken(Vec<f64>);
+type Cause = PointCause<Oscillator>;
 
 impl PointKind for Shaken {
     type Model = Oscillator;
@@ -32,8 +25,8 @@ impl PointKind for Shaken {
     fn read(&self, own: &Oscillator) -> Result<Grid, GapError> {
         let at = |w: &f64| {
             let (real, imaginary) = (own.spring - w * w, own.damper * w);
-            let size = own.gain / (real * real + imaginary * imaginary);
-            vec![real * size, imaginary * size]
+            let square = real * real + imaginary * imaginary;
+            vec![real / square, imaginary / square]
         };
         Ok(self.0.iter().map(at).collect())
     }
@@ -41,24 +34,22 @@ impl PointKind for Shaken {
 
 fn main() -> Result<(), GapError> {
     let kind = Shaken((0..20).map(|k| 4.0 + 0.6 * f64::from(k)).collect());
-    let model = Oscillator { spring: 100.0, damper: 0.8, gain: 1.0 };
+    let model = Oscillator { spring: 100.0, damper: 0.8 };
     let truth = kind.read(&Oscillator { spring: 90.0, ..model })?;
     let (deviation, mut random) = (2e-4, SplitMix(1));
-    let points: Vec<Point> = (truth.iter().zip(&kind.0).enumerate())
-        .map(|(p, (row, frequency))| Point {
-            id: format!("{frequency:.1} rad/s"),
-            group: p,
-            is_reference: false,
-            conditions: vec![*frequency],
-            measured: row.iter().map(|v| Some(v + deviation * random.normal())).collect(),
-            deviation: vec![deviation; 2],
-        })
-        .collect();
+    let read = |(group, (row, frequency)): (usize, (&Vec<f64>, &f64))| Point {
+        id: format!("{frequency:.1} rad/s"),
+        group,
+        is_reference: false,
+        conditions: vec![*frequency],
+        measured: row.iter().map(|v| Some(v + deviation * random.normal())).collect(),
+        deviation: vec![deviation; 2],
+    };
+    let points: Vec<Point> = truth.iter().zip(&kind.0).enumerate().map(read).collect();
     let ratio = || vec![CauseParameter::ratio(&[0.95, 1.1], (0.3, 3.0))];
-    let causes: [Cause; 3] = [
+    let causes = [
         Cause::new("spring", "the spring is softer", ratio(), |m, v| m.spring *= v[0]),
         Cause::new("damper", "the damper damps more", ratio(), |m, v| m.damper *= v[0]),
-        Cause::new("sensor-gain", "the sensor reads more", ratio(), |m, v| m.gain *= v[0]),
     ];
     let (channels, instruments) = channels_of(&["x_cos_m", "x_sin_m"]);
     let instrument = |name| Instrument { name, gain: 0.005, zero: 0.0 };

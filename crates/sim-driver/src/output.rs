@@ -1,7 +1,7 @@
 //! Tables for people and JSON for programs.
 
-pub(crate) use report_page::{Column, counted, csv_of, table_of, unique};
 pub use report_page::{SCREEN, Sheet, table, wrap};
+pub(crate) use report_page::{counted, table_of, unique};
 
 use crate::SimError;
 use serde::Serialize;

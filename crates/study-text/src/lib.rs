@@ -11,11 +11,13 @@
 //! | flaps against root pitch | `root_pitch` |
 //! | flights under noise, a wrong T and drift, and how wrong T may be | `robustness` |
 //! | names of sets and flaps | `names` |
+//! | files of `hhc`, and by what each is known | [`known`] |
 //! | a free wake: tables, geometry, the revolution for `ParaView` | `wake`, `revolution` |
 
 mod airloads;
 mod blade_loads;
 mod costs;
+pub mod known;
 mod modes;
 mod names;
 mod revolution;

@@ -15,7 +15,7 @@ pub use documents::{
     summary,
 };
 pub use manifests::{manifests, profiles};
-pub use rust::{LINE_LIMIT, LONG_FILES, rust};
+pub use rust::{EXAMPLE_LIMIT, LINE_LIMIT, LONG_FILES, rust};
 pub use tree::{TextFile, Tree};
 pub use validation_ids::{ids_in, validation_ids};
 

@@ -5,6 +5,9 @@ use super::{Finding, TextFile, Tree};
 /// Lines a source may have; past about 600 it usually holds two ideas.
 pub const LINE_LIMIT: usize = 700;
 
+/// Lines that an example stays below: one task of its user.
+pub const EXAMPLE_LIMIT: usize = 80;
+
 /// Sources that may be longer than [`LINE_LIMIT`], each with the reason.
 pub const LONG_FILES: &[(&str, &str)] = &[];
 
@@ -32,14 +35,30 @@ const MACHINE_FOLDERS: [&str; 4] =
 ///
 /// - it starts with a `//!` line that says what it holds;
 /// - it has at most [`LINE_LIMIT`] lines, or a line with a reason in [`LONG_FILES`];
+/// - an example of a crate, in Python too, has less than [`EXAMPLE_LIMIT`] lines;
 /// - tests do not expect panics without naming the message, nor are they ignored without reason;
 /// - no word marks work left undone, no path belongs to one machine;
 /// - no crate but `KNOW_FILES` knows files, environment, clock, processes or network.
 pub fn rust(tree: &Tree) -> Vec<Finding> {
     let mut findings: Vec<Finding> = tree.ending_in(".rs").flat_map(source).collect();
     findings.extend(stale_exceptions(tree, LONG_FILES));
+    findings.extend(tree.texts.iter().filter_map(long_example));
     findings.extend(tree.texts.iter().flat_map(machine_paths));
     findings
+}
+
+/// An example of a crate that is no single task any more.
+fn long_example(file: &TextFile) -> Option<Finding> {
+    let (_, inside) = file.path.strip_prefix("crates/")?.split_once('/')?;
+    let name = inside.strip_prefix("examples/")?;
+    let lines = file.text.lines().count();
+    let is_long = (name.ends_with(".rs") || name.ends_with(".py")) && lines >= EXAMPLE_LIMIT;
+    is_long.then(|| {
+        let fault = format!(
+            "has {lines} lines, an example less than {EXAMPLE_LIMIT}: cut it down to one task of its user"
+        );
+        Finding::of_file(&file.path, fault)
+    })
 }
 
 fn source(file: &TextFile) -> Vec<Finding> {

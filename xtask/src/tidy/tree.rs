@@ -9,7 +9,7 @@ use crate::XtaskError;
 const SKIPPED_FOLDERS: [&str; 4] = [".git", "target", "out", "book"];
 
 /// Endings of the files whose text is read; of all others only the name is known.
-const TEXT_ENDINGS: [&str; 7] = ["rs", "toml", "md", "cff", "ron", "yml", "sh"];
+const TEXT_ENDINGS: [&str; 8] = ["rs", "py", "toml", "md", "cff", "ron", "yml", "sh"];
 
 /// A text with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -188,6 +188,11 @@ fn breaches_in_sources_are_found() {
     one(&rust("a.rs", "//! A.\n#[ignore]\n"), "reason");
     one(&rust("a.rs", &"//! Long.\n".repeat(tidy::LINE_LIMIT + 1)), "lines");
     assert_eq!(rust("a.rs", &"//! Long.\n".repeat(tidy::LINE_LIMIT)), []);
+    let example = |path: &str, lines: usize| rust(path, &"//! Long.\n".repeat(lines));
+    for path in ["crates/trim/examples/a.rs", "crates/trim/examples/a.py"] {
+        one(&example(path, tidy::EXAMPLE_LIMIT), "one task");
+        assert_eq!(example(path, tidy::EXAMPLE_LIMIT - 1), []);
+    }
     for word in [concat!("to", "do!()"), concat!("unimple", "mented!()"), concat!("// FIX", "ME")] {
         one(&rust("a.rs", &format!("//! A.\n{word}\n")), "undone");
     }

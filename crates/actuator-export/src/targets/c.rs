@@ -45,9 +45,7 @@ fn header(plan: &Plan<'_>, library: &Library) -> String {
     let with_history = plan.stages().filter(|stage| stage.kind.has_history());
     let histories = with_history.map(|stage| field(&format!("{}_history", stage.id), &stage.id));
     let mut inverse_state: Vec<String> = histories.collect();
-    if plan.law.guesses_rate {
-        inverse_state.push(library.piece("prandtl.inverse_state").to_owned());
-    }
+    inverse_state.extend(own_inverse(plan, library, "_state"));
     let about = prefixed(&plan.about(), " * ");
     let more = [
         ("about", about.as_str()),
@@ -59,6 +57,13 @@ fn header(plan: &Plan<'_>, library: &Library) -> String {
         ("highest", &number(plan.model.range_volt.highest_volt())),
     ];
     with(plan, HEADER, &more)
+}
+
+/// A piece of the inverse of a law that has one of its own.
+fn own_inverse(plan: &Plan<'_>, library: &Library, ending: &str) -> Option<String> {
+    let law = [(plan.law.guesses_rate, "prandtl"), (plan.law.rises, "plays")];
+    let own = law.iter().find(|(is_own, _)| *is_own)?.1;
+    Some(library.piece(&format!("{own}.inverse{ending}")).to_owned())
 }
 
 /// Lengths of lists, for the declarations.
@@ -96,6 +101,10 @@ fn source(plan: &Plan<'_>, library: &Library) -> String {
         ("common_constants", constants(&common, "")),
         ("law", law_text),
         ("stages", stages),
+        (
+            "law_inverse",
+            if law.rises { library.piece("plays.rising").to_owned() } else { String::new() },
+        ),
         ("amplifier_start", glue.forward(List::Amplifier, "start")),
         ("linkage_start", glue.forward(List::Linkage, "start")),
         ("amplifier_step", glue.forward(List::Amplifier, "step")),
@@ -188,9 +197,7 @@ impl Glue<'_> {
         let mut lines: Vec<String> = with_history
             .map(|stage| of(stage, "    {{id}}_history_start(&s->{{id}}, &s->model.{{id}});"))
             .collect();
-        if self.plan.law.guesses_rate {
-            lines.push(self.library.piece("prandtl.inverse_start").to_owned());
-        }
+        lines.extend(own_inverse(self.plan, self.library, "_start"));
         lines.join("\n")
     }
 
@@ -211,12 +218,10 @@ impl Glue<'_> {
             Some(of(stage, &filled(&line, &[("x", x)])))
         };
         let mut lines: Vec<String> = self.plan.linkage.iter().rev().filter_map(step).collect();
-        lines.push(if self.plan.law.guesses_rate {
-            self.library.piece("prandtl.inverse").to_owned()
-        } else {
+        lines.push(own_inverse(self.plan, self.library, "").unwrap_or_else(|| {
             "        volt = law_inverse(&s->model.law, s->model.law_volt, deg, &reached);"
                 .to_owned()
-        });
+        }));
         lines.extend(self.plan.amplifier.iter().rev().filter_map(step));
         lines.join("\n")
     }

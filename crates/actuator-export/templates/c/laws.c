@@ -22,6 +22,7 @@ static double law_start({{name}}_law *m, double volt)
 @@ plays.type
 typedef struct {
     double play[{{NAME}}_LEVELS];   /* states of the plays in cells: 0 to {{NAME}}_LEVELS - j */
+    double now_deg;           /* output, deg */
 } {{name}}_law;
 @@ plays.plays
 /* A voltage in cells above the lower end of the grid. */
@@ -68,7 +69,8 @@ static double law_probe(const {{name}}_law *m, double volt)
 static double law_start({{name}}_law *m, double volt)
 {
     rest(m, cells(volt));
-    return law_probe(m, volt);
+    m->now_deg = law_probe(m, volt);
+    return m->now_deg;
 }
 
 static double law_step({{name}}_law *m, double volt)
@@ -89,7 +91,62 @@ static double law_step({{name}}_law *m, double volt)
             sum[lane] += at(G0_DEG[j + lane], m->play[j + lane]);
         }
     }
-    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    m->now_deg = (sum[0] + sum[1]) + (sum[2] + sum[3]);
+    return m->now_deg;
+}
+@@ plays.inverse_state
+    double deg_per_volt;      /* slope of the law where it came to last */
+@@ plays.inverse_start
+    s->deg_per_volt = 1.0;
+@@ plays.inverse
+        volt = rising_inverse(&s->model.law, s->model.law_volt, deg, &s->deg_per_volt, &reached);
+@@ plays.rising
+/* The output at a voltage, from the last one and the plays that move on the way, and its slope there. These are the
+ * first plays: none moves unless all narrower ones do. */
+static double moved_output(const {{name}}_law *m, double volt, double *deg_per_volt)
+{
+    const double top = cells(volt);
+    double sum[2] = {0.0, 0.0}, slope = 0.0;
+    int j;
+    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
+        const double was = m->play[j], x = moved(was, top, j);
+        const double *from = G0_DEG[j] + (int)was, *to = G0_DEG[j] + (int)x;
+        const double rise = to[1] - to[0];
+        if (!(x < was || x > was)) {
+            break;
+        }
+        sum[0] += to[0] - from[0];
+        sum[1] += (x - (int)x) * rise - (was - (int)was) * (from[1] - from[0]);
+        slope += rise;
+    }
+    *deg_per_volt = slope / CELL_VOLT;
+    return m->now_deg + (sum[0] + sum[1]);
+}
+
+/* As law_inverse, of a map in which every play rises with its input: the output rises with the voltage in
+ * straight pieces, and Newton's method from the slope of the last sample needs a probe or two. */
+static double rising_inverse(const {{name}}_law *m, double last_volt, double wanted_deg,
+                             double *deg_per_volt, int *reached)
+{
+    double volt = last_volt, off = m->now_deg - wanted_deg;
+    const int rises = off < 0.0;
+    int i;
+    for (i = 0; i < 5 && fabs(off) > TOLERANCE_DEG; ++i) {
+        volt -= off / *deg_per_volt;
+        if (!(volt >= LOWEST_VOLT && volt <= HIGHEST_VOLT && (volt > last_volt) == rises)) {
+            break;
+        }
+        off = moved_output(m, volt, deg_per_volt) - wanted_deg;
+    }
+    if (fabs(off) <= TOLERANCE_DEG && volt >= LOWEST_VOLT && volt <= HIGHEST_VOLT) {
+        return volt;
+    }
+    volt = law_inverse(m, last_volt, wanted_deg, reached);
+    moved_output(m, volt, deg_per_volt);
+    if (!(*deg_per_volt > 0.0)) {
+        *deg_per_volt = 1.0;
+    }
+    return volt;
 }
 @@ dynamic.type
 typedef struct {

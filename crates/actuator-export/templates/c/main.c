@@ -142,6 +142,8 @@ static double law_inverse(const {{name}}_law *m, double last_volt, double wanted
     return nearest;
 }
 
+{{law_inverse}}
+
 double {{name}}_inverse_start({{name}}_inverse_state *s, double volt)
 {
     s->volt = isfinite(volt) ? held(volt, LOWEST_VOLT, HIGHEST_VOLT)

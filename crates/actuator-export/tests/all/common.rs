@@ -318,3 +318,19 @@ pub(crate) fn there_is(program: &str, arguments: &[&str]) -> bool {
     let output = Command::new(program).args(arguments).output();
     output.is_ok_and(|output| output.status.success())
 }
+
+/// Whether exported code can be checked by `numpy` or `octave`. `EXPORT_CHECKS` names those that have to be there.
+#[expect(clippy::disallowed_methods, reason = "the environment says which checks may be left out")]
+pub(crate) fn can_check(by: &str) -> bool {
+    let found = match by {
+        "octave" => there_is("octave-cli", &["--version"]),
+        _ => there_is("python3", &["-c", &format!("import {by}")]),
+    };
+    let needed = std::env::var("EXPORT_CHECKS").unwrap_or_default();
+    let is_needed = needed.split_whitespace().any(|name| name == by);
+    assert!(found || !is_needed, "EXPORT_CHECKS names {by}, which is not there");
+    if !found {
+        println!("no {by} here: nothing tested");
+    }
+    found
+}

@@ -1,8 +1,8 @@
 //! MATLAB: by Octave where there is one.
 
 use crate::common::{
-    Named, amplitude, bench, folder, largest_difference, laws, read_numbers, run, stages, there_is,
-    wanted, write, write_numbers,
+    Named, amplitude, bench, can_check, folder, largest_difference, laws, read_numbers, run,
+    stages, wanted, write, write_numbers,
 };
 use actuator_export::{Target, export};
 
@@ -23,8 +23,7 @@ end
 
 #[test]
 fn octave_gives_the_numbers_of_the_model() {
-    if !there_is("octave-cli", &["--version"]) {
-        println!("no octave here: nothing tested");
+    if !can_check("octave") {
         return;
     }
     let step_s = 1e-3;

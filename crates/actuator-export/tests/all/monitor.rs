@@ -1,7 +1,7 @@
 //! The monitor of a named cause: it sees what is there, and C, Python and MATLAB give its numbers.
 
 use crate::common::{
-    folder, largest_difference, read_numbers, run, statics, there_is, wanted, write_numbers,
+    can_check, folder, largest_difference, read_numbers, run, statics, wanted, write_numbers,
 };
 use actuator_export::{
     ExportError, Monitor, Seen, Target, Watched, export_monitor, without_stages,
@@ -165,8 +165,7 @@ int main(void)
 
 #[test]
 fn numpy_gives_the_numbers_of_rust() {
-    if !there_is("python3", &["-c", "import numpy"]) {
-        println!("no python3 with NumPy here: nothing tested");
+    if !can_check("numpy") {
         return;
     }
     let folder = folder("monitor_python");
@@ -191,8 +190,7 @@ fwrite(fopen('out', 'wb'), rows', 'double');
 
 #[test]
 fn octave_gives_the_numbers_of_rust() {
-    if !there_is("octave-cli", &["--version"]) {
-        println!("no octave here: nothing tested");
+    if !can_check("octave") {
         return;
     }
     let folder = folder("monitor_matlab");

@@ -11,9 +11,10 @@ pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
 pub(crate) use summary::{LEAST_SHARE, fits, section};
 
 use crate::BenchError;
+use crate::glance::{OF_BUTTERFLY, is_butterfly};
 use crate::stored::{GainRule, StoredActuator, StoredChannels, StoredFit, StoredKind};
 use actuator_gap::{DiagnosisError, NotJudged, judged};
-use measured_data::problem::Place;
+use measured_data::problem::{Fault, Place, Problem};
 use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, Finding, FlapZero, Identification, MOST_UNEXPLAINED,
@@ -81,6 +82,16 @@ impl DataHeading {
                 BenchError::Diagnosis { place: dataset_place(&self.folder).field(id), source }
             }
         }
+    }
+
+    /// What is missing of data in which nothing moves.
+    fn only_rests(&self, rests: &[BenchRecord]) -> Problem {
+        let ids: Vec<&str> = rests.iter().map(|record| record.id.as_str()).collect();
+        let message = format!(
+            "the input rests in every record ({}): noise, hum and drift can be read from rests, a model cannot. Record a slow sine or triangle over the range, and a faster one for what depends on rate, and import them together with the rests",
+            ids.join(", ")
+        );
+        Problem::new(dataset_place(&self.folder).field("runs"), Fault::Refused { message })
     }
 
     /// An error of the model or its identification, at the place of the data set.
@@ -232,6 +243,9 @@ fn identified(
 ) -> Result<BenchIdentification, BenchError> {
     let (rests, mut records): (Vec<_>, Vec<_>) =
         records.into_iter().partition(BenchRecord::is_at_rest);
+    if records.is_empty() && !rests.is_empty() {
+        return Err(heading.only_rests(&rests).into());
+    }
     let mut switched_on = Vec::new();
     // 0 V is where an amplifier is switched on; of other channels nothing is known
     for record in records.iter_mut().filter(|_| heading.channels.is_none()) {
@@ -267,6 +281,12 @@ fn identified(
         _ => None,
     });
     if let (Some(nrmse_percent), None) = (not_described, &heading.channels) {
+        if let Some(record) = records.iter().find(|own| is_butterfly(own, &own.drive())) {
+            let message =
+                format!("{OF_BUTTERFLY}, and set command_range_V of dataset.ron to that range");
+            let place = dataset_place(&heading.folder).field(format!("record {}", record.id));
+            return Err(Problem::new(place, Fault::Refused { message }).into());
+        }
         return Err(heading.failed(PreisachError::NotDescribed { nrmse_percent }));
     }
     let model = identification.dynamic.clone();

@@ -5,10 +5,11 @@ use super::file::{DEFAULT_COMMAND_RANGE_VOLT, DatasetKind};
 use super::open::OpenDataset;
 use super::run::Run;
 use crate::files::Folder;
-use crate::problem::{Fault, Problem, Problems};
+use crate::problem::{Fault, Place, Problem, Problems};
 use crate::tables::{
-    Listing, Record, Spans, check_lag, check_record, check_unit, limits, parse_measured_csv,
+    Record, Spans, check_lag, check_record, check_unit, limits, parse_measured_csv,
 };
+use rotor_base::significant;
 
 /// A bench data set, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +58,9 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
             open.problems.push(place, Fault::Other(message));
         }
     }
+    let is_given = open.dataset.command_range_volt.is_some();
+    // a range that nobody gave tells nothing of the unit
+    let of_unit = if is_given { range } else { Some(PLAUSIBLE_RANGE_VOLT) };
     let runs = open.runs(|open, source| {
         let mut table = parse_measured_csv(source)?;
         open.warnings.append(&mut table.warnings);
@@ -66,9 +70,17 @@ pub fn read_bench(folder: &Folder) -> Result<BenchData, Problems> {
             input: ("command_V", "V", &table.input),
             output: ("displacement_um", "um", &table.output),
         };
-        check_bench_record(&record, range, &mut open.problems, &mut open.warnings);
+        let ranges = [range, of_unit];
+        check_bench_record(&record, ranges, &mut open.problems, &mut open.warnings);
         Ok(table)
     });
+    let placed = |run: &Run, sample: usize| {
+        let name = folder.display(&run.entry.file);
+        let line = run.table.lines.get(sample);
+        line.map_or(Place::file(&name), |line| Place::at(&name, *line, 1)).field("command_V")
+    };
+    let beyond = range.and_then(|range| beyond_range(&runs, range, is_given, placed));
+    open.problems.note(beyond.map_or(Ok(()), Err));
     let spans = open.check_together(&runs, [("command_V", "V"), ("displacement_um", "um")]);
     if let Some(fault) = monitor_volts(&spans) {
         open.warnings.push(Problem::new(open.index.place("runs"), fault));
@@ -118,34 +130,67 @@ pub(crate) fn monitor_volts(all: &[Spans]) -> Option<Fault> {
     })
 }
 
-/// The checks of an actuator's record: movement, clipping, range and unit of the command, lag.
+/// Voltages that piezo stacks, benders and their amplifiers reach, V.
+pub(crate) const PLAUSIBLE_RANGE_VOLT: (f64, f64) = (-1000.0, 1000.0);
+
+/// The checks of an actuator's record: movement, clipping, unit of the command, lag where it keeps to its range. The
+/// ranges are that of the command, and the one that tells its unit.
 pub(crate) fn check_bench_record(
     record: &Record<'_>,
-    range: Option<(f64, f64)>,
+    [range, of_unit]: [Option<(f64, f64)>; 2],
     problems: &mut Problems,
     warnings: &mut Vec<Problem>,
 ) {
     let moves = check_record(record, problems, warnings);
-    let in_range = range.is_none_or(|range| {
-        check_unit(record, range, problems) && check_commands(record, range, problems)
-    });
+    let in_range = of_unit.is_none_or(|range| check_unit(record, range, problems))
+        && range.is_none_or(|range| first_beyond(record.input.2, range).is_none());
     if moves && in_range {
         check_lag(record, problems);
     }
 }
 
-fn check_commands(record: &Record<'_>, (low, high): (f64, f64), problems: &mut Problems) -> bool {
+/// The first command that leaves the range by more than the digits of a converter.
+fn first_beyond(values: &[f64], (low, high): (f64, f64)) -> Option<usize> {
     let slack = COMMAND_TOLERANCE * (high - low);
-    let mut listing = Listing::default();
-    let before = problems.as_slice().len();
-    for (sample, volt) in record.input.2.iter().enumerate() {
-        if *volt < low - slack || *volt > high + slack {
-            let message = format!(
-                "the command {volt} V lies outside command_range_V ({low}, {high}) of dataset.ron; correct the range, or remove the record"
-            );
-            listing.push(problems, record.place(sample, record.input.0), Fault::Other(message));
-        }
+    values.iter().position(|volt| *volt < low - slack || *volt > high + slack)
+}
+
+/// The fault of records that leave the command range, at the first sample that does: what the range has to be.
+fn beyond_range(
+    runs: &[Run],
+    range: (f64, f64),
+    is_given: bool,
+    place: impl Fn(&Run, usize) -> Place,
+) -> Option<Problem> {
+    let leaves = |run: &&Run| first_beyond(&run.table.input, range).is_some();
+    let first = runs.iter().find(leaves)?;
+    let sample = first_beyond(&first.table.input, range)?;
+    let ids: Vec<&str> = runs.iter().filter(leaves).map(|run| run.entry.id.as_str()).collect();
+    let ends: Vec<f64> =
+        runs.iter().flat_map(|run| <[f64; 2]>::from(limits(&run.table.input))).collect();
+    let (least, most) = outward(limits(&ends));
+    let (low, high) = range;
+    let whose = if is_given {
+        "of dataset.ron"
+    } else {
+        "of a common stack, which stands for the one that dataset.ron does not give"
+    };
+    let message = format!(
+        "the command {} V lies outside command_range_V ({low}, {high}) {whose}; command_range_V is what the amplifier may put on this actuator: the records need `command_range_V: ({least}, {most})` or more in dataset.ron. Beyond it: {}; of a record with another unit or device correct or remove that record",
+        first.table.input[sample],
+        ids.join(", ")
+    );
+    Some(Problem::new(place(first, sample), Fault::Other(message)))
+}
+
+/// Limits moved outwards to a whole number of a tenth of the power of ten below their distance: what a reader would write.
+fn outward((low, high): (f64, f64)) -> (f64, f64) {
+    let step = 10_f64.powf((high - low).log10().floor() - 1.0);
+    if !(step.is_finite() && step > 0.0) {
+        return (low, high);
     }
-    listing.finish(problems);
-    problems.as_slice().len() == before
+    // digits of a converter beyond a whole step are none
+    let slack = COMMAND_TOLERANCE * (high - low) / step;
+    let whole = |value: f64| significant(value * step, 6) + 0.0;
+    (whole((low / step + slack).floor()), whole((high / step - slack).ceil()))
 }

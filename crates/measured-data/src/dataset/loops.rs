@@ -62,7 +62,12 @@ pub fn read_loops(folder: &Folder) -> Result<LoopData, Problems> {
     }
     let ends = runs.iter().map(|run| limits(&run.table.input));
     let ends: Vec<f64> = ends.flat_map(|(low, high)| [low, high]).collect();
-    let of_all = (limits(&ends), "from the smallest to the largest input of all runs");
+    let (low, high) = limits(&ends);
+    let of_all = if low < high {
+        ((low, high), "from the smallest to the largest input of all runs")
+    } else {
+        ((low - 1.0, high + 1.0), "about the one input there is")
+    };
     let (input_range, range_rule) = given.map_or(of_all, |range| (range, "given in dataset.ron"));
     let (folder, content_hash) = open.origin();
     let data = channels.map(|channels| LoopData {

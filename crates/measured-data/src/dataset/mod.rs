@@ -15,7 +15,7 @@ mod sweep;
 pub use accuracy::{Accuracy, DisplacementAccuracy, VoltageAccuracy};
 pub use any::{DataSet, dataset_kind, read_dataset};
 pub use bench::{BenchData, read_bench};
-pub(crate) use bench::{check_bench_record, monitor_volts, range_unused};
+pub(crate) use bench::{PLAUSIBLE_RANGE_VOLT, check_bench_record, monitor_volts, range_unused};
 pub use curves::{CurveData, CurveRun, ReversalCurve, read_curves};
 pub use effect_tables::{ChannelAccuracy, EffectFile, EffectTables, read_effect_tables};
 pub use file::{

@@ -266,6 +266,31 @@ fn normalised(path: &str) -> String {
     parts.join("/")
 }
 
+/// Names of folders, such as those of like specimens: as much of the end of each path as tells them apart.
+///
+/// # Errors
+/// A folder that is given twice.
+pub fn distinct_names(data: &[PathBuf]) -> Result<Vec<String>, Problem> {
+    // a folder that is not there is told of where it is read
+    let paths: Vec<PathBuf> =
+        data.iter().map(|path| path.canonicalize().unwrap_or_else(|_| path.clone())).collect();
+    let ends = |depth: usize| -> Vec<String> {
+        let end = |path: &PathBuf| {
+            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
+            parts[parts.len().saturating_sub(depth)..].join("_").replace(['/', '\\'], "")
+        };
+        paths.iter().map(end).collect()
+    };
+    let deepest = paths.iter().map(|path| path.iter().count()).max().unwrap_or(0);
+    let is_told_apart =
+        |names: &Vec<String>| (1..names.len()).all(|i| !names[..i].contains(&names[i]));
+    (1..=deepest).map(ends).find(is_told_apart).ok_or_else(|| {
+        let message =
+            "one folder was given twice: give the folder of each specimen once".to_owned();
+        Problem::new(Place::file("--data"), Fault::Refused { message })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

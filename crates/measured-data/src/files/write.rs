@@ -114,6 +114,17 @@ pub fn refuse_other_text(path: &Path, held: &str, kind: &'static str) -> Result<
     Err(DataError::WouldOverwriteOther { path: path.to_path_buf(), kind })
 }
 
+/// Refuses to replace files of a folder, each given by its name and a text that all files of `hhc` with that name hold.
+///
+/// # Errors
+/// [`DataError::WouldOverwriteOther`] of the first that does not hold its text.
+pub fn refuse_foreign<'a>(
+    folder: &Path,
+    mut files: impl Iterator<Item = (&'a str, &'a str)>,
+) -> Result<(), DataError> {
+    files.try_for_each(|(name, held)| refuse_other_text(&folder.join(name), held, "result of hhc"))
+}
+
 /// The file for what is made of a data folder if the user names none: the folder's name with the ending `.ron`, in the working
 /// folder.
 pub fn default_model_file(data: &Path) -> PathBuf {
@@ -285,6 +296,11 @@ mod tests {
         };
         assert!(of_text("own.ron", "a comment") && of_text("empty", "a") && of_text("none", "a"));
         assert!(!of_text("data.csv", "a comment") && !of_text("bytes", "a comment"));
+        let known = [("own.ron", "a comment"), ("none", "a"), ("data.csv", "time_s,")];
+        refuse_foreign(place.path(), known.into_iter()).unwrap();
+        let error = refuse_foreign(place.path(), [known[0], ("data.csv", "psi,")].into_iter());
+        let text = error.unwrap_err().to_string();
+        assert!(text.contains("data.csv exists already and is no file of kind result"), "{text}");
     }
 
     #[cfg(unix)]

@@ -47,7 +47,18 @@ const USUAL: [&str; 3] = ["time_s", "command_V", "displacement_um"];
 /// The fault of columns without units, with what to write for the first ones.
 fn unitless(named: &[(usize, Channel)], left_out: &[String]) -> Fault {
     let first = left_out.first().map_or("", String::as_str);
-    let taken = USUAL.into_iter().filter(|own| named.iter().all(|(_, c)| c.label() != *own));
+    let mut named = named.to_vec();
+    for (at, (name, _)) in bench_places(&named).into_iter().zip(BENCH) {
+        if let Some(at) = at {
+            name.clone_into(&mut named[at].1.name);
+        }
+    }
+    // a quantity that is there in another unit is not asked for again
+    let is_there = |own: &Channel| {
+        let alike = |c: &Channel| c.unit.dimension == own.unit.dimension;
+        named.iter().any(|(_, c)| alike(c) && (c.name == own.name || own.is_time()))
+    };
+    let taken = USUAL.into_iter().filter(|own| !Channel::parse(own).is_some_and(|c| is_there(&c)));
     let plain = |name: &&String| !name.is_empty() && !name.contains([',', '=', '[', '"']);
     let sources = left_out.iter().filter(plain);
     let kept = named.iter().map(|(i, c)| format!("{}=#{}", c.label(), i + 1));
@@ -284,17 +295,24 @@ pub(super) fn choose(
     Ok(choice)
 }
 
-/// Calls the only voltage the command and the only length the displacement, where no column has these names.
-fn name_bench(data: &mut [(usize, Channel)]) {
-    let bench = [("command", Dimension::Voltage), ("displacement", Dimension::Length)];
-    let only = bench.map(|(name, dimension)| {
+/// What a bench calls its command and its displacement.
+const BENCH: [(&str, Dimension); 2] =
+    [("command", Dimension::Voltage), ("displacement", Dimension::Length)];
+
+/// The columns that are, or can only be, command and displacement.
+fn bench_places(data: &[(usize, Channel)]) -> [Option<usize>; 2] {
+    BENCH.map(|(name, dimension)| {
         let is = |i: &usize| data[*i].1.unit.dimension == dimension;
         let all: Vec<usize> = (0..data.len()).filter(is).collect();
         let named = all.iter().copied().find(|i| data[*i].1.name == name);
         named.or(if let [one] = all[..] { Some(one) } else { None })
-    });
-    if let [Some(command), Some(displacement)] = only {
-        for (at, (name, _)) in [command, displacement].into_iter().zip(bench) {
+    })
+}
+
+/// Calls the only voltage the command and the only length the displacement, where no column has these names.
+fn name_bench(data: &mut [(usize, Channel)]) {
+    if let [Some(command), Some(displacement)] = bench_places(data) {
+        for (at, (name, _)) in [command, displacement].into_iter().zip(BENCH) {
             name.clone_into(&mut data[at].1.name);
         }
     }

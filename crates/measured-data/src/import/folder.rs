@@ -5,8 +5,8 @@ use super::gather::Gathered;
 use super::micromag::MicroMag;
 use super::{ImportKind, ImportRequest, Imported, ReadSource, SourceKind, folder_kind};
 use crate::dataset::{
-    DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, RunFile, check_bench_record,
-    monitor_volts, range_unused,
+    DATASET, DEFAULT_COMMAND_RANGE_VOLT, DatasetFile, DatasetKind, PLAUSIBLE_RANGE_VOLT, RunFile,
+    check_bench_record, monitor_volts, range_unused,
 };
 use crate::error::DataError;
 use crate::files::{ron_text, write_folder};
@@ -23,9 +23,6 @@ use std::path::Path;
 const DIGITS: usize = 9;
 /// Significant digits of the times written.
 const TIME_DIGITS: usize = 14;
-
-/// Voltages that piezo stacks, benders and their amplifiers reach, V.
-const PLAUSIBLE_RANGE_VOLT: (f64, f64) = (-1000.0, 1000.0);
 
 /// What `hhc import` prints.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -221,7 +218,15 @@ fn range_of(
     }
     let inputs = runs.iter().filter_map(|r| r.columns.first());
     let ends: Vec<f64> = inputs.flat_map(|input| [input.least, input.largest]).collect();
-    (Some(limits(&ends)), "from the smallest to the largest input of all runs")
+    let (low, high) = limits(&ends);
+    if low >= high {
+        let (usual_low, usual_high) = DEFAULT_COMMAND_RANGE_VOLT;
+        return (
+            Some((usual_low.min(low), usual_high.max(high))),
+            "the usual one, as no input moves; correct it with the records that do",
+        );
+    }
+    (Some((low, high)), "from the smallest to the largest input of all runs")
 }
 
 impl ReadSource {
@@ -339,24 +344,22 @@ impl Parts {
         }
         let place = || source.place().field(&labels[0]);
         let (least, largest) = limits(&gathered.columns[0]);
+        let (unit, remedy) = (channels[0].unit.symbol, "correct --range, or its unit");
+        for value in [least, largest] {
+            let left = range.filter(|(low, high)| value < *low || value > *high);
+            if let Some((low, high)) = left {
+                problems.push(place(), Fault::OutOfRange { value, low, high, unit, remedy });
+            }
+        }
         match choice.kind {
             ImportKind::GenericLoop
             | ImportKind::RotorSweep
             | ImportKind::BladeFrequencies
             | ImportKind::SectionLoops => {
                 check_record(&record, problems, warnings);
-                let (unit, remedy) = (channels[0].unit.symbol, "correct --range, or its unit");
-                let outside =
-                    |value: f64| range.filter(|(low, high)| value < *low || value > *high);
-                for value in [least, largest] {
-                    if let Some((low, high)) = outside(value) {
-                        let fault = Fault::OutOfRange { value, low, high, unit, remedy };
-                        problems.push(place(), fault);
-                    }
-                }
             }
             ImportKind::ActuatorBench => {
-                check_bench_record(&record, range, problems, warnings);
+                check_bench_record(&record, [range; 2], problems, warnings);
                 // without a range, what piezo actuators see at all tells volts from their
                 // thousandths, and the range of a common stack from their thousands
                 if range.is_none() && check_unit(&record, PLAUSIBLE_RANGE_VOLT, problems) {

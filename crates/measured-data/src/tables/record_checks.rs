@@ -55,22 +55,17 @@ pub(crate) fn check_record(
     });
     if is_dead {
         let (label, unit, values) = record.output;
-        let fault = constant(values, unit, "output");
-        problems.push(record.place(0, label), fault);
+        // minus zero is zero
+        let message = format!(
+            "every sample is {} {unit}: nothing can be learnt from a constant output; check that the right column was recorded",
+            limits(values).0 + 0.0
+        );
+        problems.push(record.place(0, label), Fault::Other(message));
     }
     if !rests && !is_dead {
         warnings.extend(clipped(record));
     }
     !rests && !is_dead
-}
-
-/// The fault of a column that never changes, from its limits.
-pub(super) fn constant(values: &[f64], unit: &str, role: &str) -> Fault {
-    // minus zero is zero
-    let value = limits(values).0 + 0.0;
-    Fault::Other(format!(
-        "every sample is {value} {unit}: nothing can be learnt from a constant {role}; check that the right column was recorded"
-    ))
 }
 
 /// The longest flat top at either limit of the output while the input moves on.

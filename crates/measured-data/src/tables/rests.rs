@@ -1,6 +1,6 @@
 //! Records at rest, and records that hold several runs with rests between them.
 
-use super::record_checks::{Record, constant, limits};
+use super::record_checks::{Record, limits};
 use crate::problem::{Fault, Place, Problem, Problems};
 use rotor_base::rests;
 use std::ops::Range;
@@ -26,7 +26,7 @@ impl Spans {
 const MOVES_AT_REST: f64 = 0.25;
 
 /// Judges the records whose input never changes: rests, which show noise, hum and drift, beside records that
-/// move; a wrong column where none moves, or where the output does.
+/// move or alone; a wrong column where the output moves as beside an input that does.
 pub(crate) fn check_rests(all: &[Spans], problems: &mut Problems, warnings: &mut Vec<Problem>) {
     let (rests, moving): (Vec<&Spans>, Vec<&Spans>) =
         all.iter().partition(|spans| spans.input.0 >= spans.input.1);
@@ -35,7 +35,10 @@ pub(crate) fn check_rests(all: &[Spans], problems: &mut Problems, warnings: &mut
         let share = (output.1 - output.0) / widest;
         let level = input.0 + 0.0;
         if moving.is_empty() {
-            problems.push(place.clone(), constant(&[level], unit, "input"));
+            let message = format!(
+                "every sample is {level} {unit}, as in every other record: noise, hum and drift can be read from it, no model can; if the input was driven, the wrong column was recorded"
+            );
+            warnings.push(Problem::new(place.clone(), Fault::Other(message)));
         } else if share > MOVES_AT_REST {
             let message = format!(
                 "every sample is {level} {unit}, while the output moves through {:.0} % of its largest range in the other runs: a system at rest does not; check that the right column was recorded",
@@ -177,7 +180,9 @@ mod tests {
         assert!(problems.is_empty() && warnings.contains("a record at rest"), "{problems}");
         let (problems, _) = judged(spans((65.0, 65.0), (50.0, 350.0)), vec![moving()]);
         assert!(problems.contains("moves through 75 % of its largest range"), "{problems}");
-        let (problems, _) = judged(spans((65.0, 65.0), (200.0, 203.0)), vec![]);
-        assert!(problems.contains("every sample is 65 V: nothing can be learnt"), "{problems}");
+        // alone it says nothing of a wrong column
+        let (problems, warnings) = judged(spans((65.0, 65.0), (200.0, 203.0)), vec![]);
+        assert!(problems.is_empty(), "{problems}");
+        assert!(warnings.contains("every sample is 65 V, as in every other record"), "{warnings}");
     }
 }

@@ -154,6 +154,12 @@ pub(crate) fn unknown_unit(column: &str) -> Fault {
     ))
 }
 
+/// Whether the letter of a unit, over another unit, is the symbol of a quantity: `s / mm` is a path, `T / K` a temperature.
+fn is_symbol(letter: Unit, over: Unit) -> bool {
+    use Dimension::{Length, MagneticField, Temperature, Time};
+    matches!((letter.dimension, over.dimension), (Time, Length) | (MagneticField, Temperature))
+}
+
 /// The text inside brackets.
 pub(super) fn strip_brackets(text: &str) -> &str {
     text.trim_matches(['(', ')', '[', ']']).trim()
@@ -182,11 +188,12 @@ impl Channel {
         let behind = |at: usize, length: usize| {
             Some((text[..at].trim(), Unit::find(text[at + length..].trim())?))
         };
-        // the quotient of the standards: `t / s`, `v / m/s`; `speed m/s` is none
+        // the quotient of the standards: `t / s`, `v / m/s`, `s / mm`; `speed m/s` is none
         let quotient = || {
             let at = text.find(" / ").map(|at| at + 1).or_else(|| text.rfind('/'))?;
-            let last = text[..at].split_whitespace().last();
-            behind(at, 1).filter(|_| last.is_some_and(|last| Unit::find(last).is_none()))
+            let last = text[..at].split_whitespace().last()?;
+            behind(at, 1)
+                .filter(|(_, unit)| Unit::find(last).is_none_or(|own| is_symbol(own, *unit)))
         };
         let (name, unit) = match text.rfind(['[', '(']) {
             Some(open) => (text[..open].trim(), Unit::find(strip_brackets(&text[open..]))?),
@@ -262,6 +269,11 @@ mod tests {
             ("Displacement [µm]", Some("displacement_um")),
             ("actuator force 1 (lb)", Some("actuator_force_1_lb")),
             ("t / s", Some("t_s")),
+            ("s / mm", Some("s_mm")),
+            ("s/mm", Some("s_mm")),
+            ("T / °C", Some("t_C")),
+            ("m / s", None),
+            ("N / mm", None),
             ("v / m/s", Some("v_m_per_s")),
             ("Weg in mm", Some("weg_mm")),
             ("Time, s", Some("time_s")),

@@ -1,5 +1,6 @@
 //! The arguments of `hhc`.
 
+use super::ForceArgs;
 use super::sweep::{PageArgs, SweepAction};
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
@@ -100,6 +101,9 @@ pub enum Command {
         /// What the page of a sweep shows.
         #[command(flatten)]
         page: PageArgs,
+        /// Leave to replace.
+        #[command(flatten)]
+        force: ForceArgs,
         /// Form of the output.
         #[command(flatten)]
         format: DetailArgs,
@@ -160,6 +164,9 @@ pub struct StudyArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc run`.
@@ -188,6 +195,9 @@ pub struct RunArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc fly`.
@@ -215,6 +225,9 @@ pub struct FlyArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc compare`.
@@ -232,6 +245,9 @@ pub struct CompareArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc identify`.
@@ -241,7 +257,7 @@ pub struct IdentifyArgs {
     #[arg(value_name = "DATA_DIR")]
     pub bench: PathBuf,
     /// Actuator file to write, `NAME.ron` of the folder's name if left out; the page of its pictures is written beside it as
-    /// ACTUATOR.html. Neither replaces what hhc did not write.
+    /// ACTUATOR.html.
     #[arg(short, long, value_name = "ACTUATOR.ron")]
     pub output: Option<PathBuf>,
     /// Actuator file whose settings (levels, form, split rule) are taken up.
@@ -250,9 +266,9 @@ pub struct IdentifyArgs {
     /// Folder for the data of the figures: loops with residuals, spectra, density, reversal curves; CSV.
     #[arg(long, value_name = "DIR")]
     pub figures: Option<PathBuf>,
-    /// Replace the files to write even if they are no actuator file and no page of hhc.
-    #[arg(long)]
-    pub force: bool,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
     /// Model to judge and to write; all of them are fitted and compared in any case.
     #[arg(long, value_parser = model_parser(true), default_value = "best")]
     pub model: ModelChoice,
@@ -280,6 +296,9 @@ pub struct PredictArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc invert`.
@@ -297,6 +316,9 @@ pub struct InvertArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// What `hhc export` writes.
@@ -355,9 +377,9 @@ pub struct ExportArgs {
     /// if left out.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
-    /// Folder to write, never overwritten.
+    /// Folder to write, never overwritten; name of the file and form, such as `ACTUATOR_c`, if left out.
     #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    pub output: Option<PathBuf>,
 }
 
 /// `hhc import`.
@@ -483,6 +505,9 @@ pub struct RecordsArgs {
     /// Form of the output.
     #[command(flatten)]
     pub format: DetailArgs,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc ladder`.
@@ -530,6 +555,9 @@ pub struct ModesArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// `hhc root-pitch`.
@@ -567,6 +595,9 @@ pub struct WakeArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }
 
 /// Responses of a section on the command line.
@@ -642,4 +673,7 @@ pub struct SectionArgs {
     /// Tables for people or JSON for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub format: Format,
+    /// Leave to replace.
+    #[command(flatten)]
+    pub force: ForceArgs,
 }

@@ -12,10 +12,12 @@ use crate::progress::Progress;
 use crate::results::{RESULT_FILE, StoredResult};
 use crate::run::{run_case, steps_of, stored_of};
 use std::path::Path;
+use study_text::known::COMPARE_FILES;
 
 pub(super) fn compare(args: &CompareArgs) -> Result<(), SimError> {
     if let Some(out) = &args.out {
         refuse_unwritable(out)?;
+        args.force.files(out, COMPARE_FILES)?;
     }
     let (a, b) = (result_of(&args.a, args)?, result_of(&args.b, args)?);
     let [name_a, name_b] = [&args.a, &args.b].map(|path| path.display().to_string());

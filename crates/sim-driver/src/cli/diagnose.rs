@@ -10,14 +10,15 @@ use crate::diagnose::{
     PointDiagnosis, PointStory, Question, Record, Records, Specimens, Stage, Story, bench_page,
     both, climb, extended, model_or_case, plan, points_of, records_of, usual_runs,
 };
-use crate::files::{Folder, SweepData, refuse_input, ron_text, write_atomic};
+use crate::files::{Folder, SweepData, distinct_names, refuse_input, ron_text, write_atomic};
 use crate::output::{Format, Printable, json, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
 use bench_study::stored::write_actuator;
 use measured_data::Accuracy;
 use rotor_gap::{TableData, read_table};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use study_text::known::{DIAGNOSIS_FILES, LADDER_FILES, PLAN_FILES, SPECIMENS_FILES};
 
 /// Name of the actuator a diagnosis extended.
 const EXTENDED_FILE: &str = "extended.ron";
@@ -41,7 +42,8 @@ pub(super) fn diagnose(args: &DiagnoseArgs) -> Result<(), SimError> {
     if let [data] = &args.data[..] {
         return print(&Story::of(&found_in(args, (model, data), output, &store)?).render(form)?);
     }
-    let names = specimen_names(&args.data)?;
+    let names = distinct_names(&args.data)?;
+    args.records.force.files(output, SPECIMENS_FILES)?;
     if args.records.reference.is_some() {
         say(&format_args!(
             "warning: one --reference for several specimens: how they differ from each other is found as a cause"
@@ -65,6 +67,7 @@ fn of_points(
     output: &Path,
 ) -> Result<(), SimError> {
     let form = args.records.format.form();
+    args.records.force.files(output, DIAGNOSIS_FILES)?;
     let case = load_case(case)?;
     warn(&sweep.warnings, form);
     let progress = Progress::new(DIAGNOSIS);
@@ -82,6 +85,9 @@ fn of_points(
 /// Says what anyone's simulator lacks, from tables of it.
 fn tabled(args: &DiagnoseArgs, folder: &Path) -> Result<(), SimError> {
     let form = args.records.format.form();
+    if let Some(output) = &args.output {
+        args.records.force.files(output, DIAGNOSIS_FILES)?;
+    }
     let read = read_table(&Folder::Disk(folder.to_path_buf()))?;
     warn(&read.warnings, form);
     let TableData { title, folder, table, .. } = read;
@@ -95,6 +101,9 @@ fn tabled(args: &DiagnoseArgs, folder: &Path) -> Result<(), SimError> {
 /// Says what runs would show of an actuator, before they are measured.
 fn planned(args: &DiagnoseArgs) -> Result<(), SimError> {
     let Some(path) = &args.plan else { return Ok(()) };
+    if let Some(output) = &args.output {
+        args.records.force.files(output, PLAN_FILES)?;
+    }
     let refused = |file: &Path, message: &str| {
         let fault = Fault::Refused { message: message.to_owned() };
         Err(Problem::new(Place::file(file.display().to_string()), fault).into())
@@ -147,6 +156,9 @@ fn found_in(
     store: &KeptStructures<'_>,
 ) -> Result<Diagnosis, SimError> {
     refuse_input(model, &output.join(EXTENDED_FILE))?;
+    let force = args.records.force;
+    force.files(output, DIAGNOSIS_FILES)?;
+    force.actuator(&output.join(EXTENDED_FILE))?;
     let (model, case) = model_or_case(model)?;
     let (measured, reference) = both_records(data, &args.records)?;
     let progress = Progress::new(DIAGNOSIS);
@@ -161,36 +173,16 @@ fn found_in(
     progress.finish();
     let found = found?;
     let findings = json(&Findings::from(&found))?;
+    let tables = found.figures();
+    force.tables(output, &tables)?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     if let Some(case) = case {
         write_extended_case(&case, output)?;
     }
-    write_texts(output, found.figures())?;
+    write_texts(output, tables)?;
     write_atomic(&output.join("findings.json"), findings.as_bytes())?;
     write_atomic(&output.join(PAGE_FILE), bench_page(&found).as_bytes())?;
     Ok(found)
-}
-
-/// Names of specimens: as much of the end of each path as tells them apart.
-fn specimen_names(data: &[PathBuf]) -> Result<Vec<String>, SimError> {
-    // a folder that is not there is told of where it is read
-    let paths: Vec<PathBuf> =
-        data.iter().map(|path| path.canonicalize().unwrap_or_else(|_| path.clone())).collect();
-    let ends = |depth: usize| -> Vec<String> {
-        let end = |path: &PathBuf| {
-            let parts: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            parts[parts.len().saturating_sub(depth)..].join("_").replace(['/', '\\'], "")
-        };
-        paths.iter().map(end).collect()
-    };
-    let deepest = paths.iter().map(|path| path.iter().count()).max().unwrap_or(0);
-    let is_told_apart =
-        |names: &Vec<String>| (1..names.len()).all(|i| !names[..i].contains(&names[i]));
-    (1..=deepest).map(ends).find(is_told_apart).ok_or_else(|| {
-        let message =
-            "one folder was given twice: give the folder of each specimen once".to_owned();
-        Problem::new(Place::file("--data"), Fault::Refused { message }).into()
-    })
 }
 
 /// Steps of the progress of a diagnosis, about percent of its time.
@@ -209,7 +201,9 @@ fn begin(progress: &Progress, stage: Stage) {
 }
 
 pub(super) fn ladder(args: &LadderArgs) -> Result<(), SimError> {
-    let (RecordsArgs { cache, format, .. }, output) = (&args.records, &args.output);
+    let (RecordsArgs { cache, format, force, .. }, output) = (&args.records, &args.output);
+    force.files(output, LADDER_FILES)?;
+    force.actuator(&output.join(EXTENDED_FILE))?;
     let (measured, reference) = both_records(&args.data, &args.records)?;
     let loaded = overridden(case_or_paper(args.case.as_ref())?, args.inflow);
     let progress = Progress::new(DIAGNOSIS + RUNGS);

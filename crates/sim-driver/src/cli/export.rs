@@ -8,19 +8,27 @@ use crate::files::{DataError, Folder, Source, write_folder};
 use crate::flight::{flight_values, leaving};
 use crate::output::{Format, print};
 use crate::problem::{Fault, Place, Problem};
-use actuator_export::{ExportError, Monitor, Target, export_monitor, without_stages};
+use actuator_export::{
+    ExportError, Monitor, Target, export_monitor, timed_command, timing_program, without_stages,
+};
 use bench_study::stored::read_actuator;
+use clap::ValueEnum;
 use preisach_dyn::ActuatorModel;
 use rotor_export::{DataFormat, controller_files, data_files};
 use rotor_flight::{controllers_of_case, exported_case, state_space_of_case};
 use std::fmt::Display;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
 
 /// Files of a folder, name and bytes of each, and warnings.
 type Written = (Vec<(String, Vec<u8>)>, Vec<String>);
 
 pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
-    if args.output.exists() {
-        return Err(DataError::WouldOverwrite { path: args.output.clone() }.into());
+    let output = &args.output.clone().unwrap_or_else(|| default_folder(args));
+    if output.exists() {
+        return Err(DataError::WouldOverwrite { path: output.clone() }.into());
     }
     let source = Source::read(&args.file)?;
     if args.what.is_some() && (is_actuator_file(&source) || args.to == ExportForm::C) {
@@ -42,9 +50,62 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
     };
     warn(&warnings, Format::Details);
     let names: Vec<&str> = files.iter().map(|(name, _)| name.as_str()).collect();
-    let text = format!("{} written to {}\n", names.join(", "), args.output.display());
-    write_folder(&args.output, &files)?;
-    print(&text)
+    let text = format!("{} written to {}\n", names.join(", "), output.display());
+    write_folder(output, &files)?;
+    let cost = if is_actuator_file(&source) { cost(args, &source, output)? } else { String::new() };
+    print(&(text + &cost))
+}
+
+/// The folder if none is given, in the working folder: the file's name and the form.
+fn default_folder(args: &ExportArgs) -> PathBuf {
+    let stem = args.file.file_stem().map(|stem| stem.display().to_string()).unwrap_or_default();
+    let form = args.to.to_possible_value().map(|own| own.get_name().to_owned()).unwrap_or_default();
+    PathBuf::from(format!("{stem}_{form}"))
+}
+
+/// What a sample costs here: of the C where it can be compiled and run, else of the model in Rust.
+#[expect(clippy::disallowed_methods, reason = "a cost is shown, not stored")]
+fn cost(args: &ExportArgs, source: &Source, folder: &Path) -> Result<String, SimError> {
+    let own = read_actuator(source)?;
+    let time_step_s = 1.0 / args.sampling_hz;
+    let name = args.name.as_deref().unwrap_or("flap_actuator");
+    let is_c = args.to == ExportForm::C && args.monitor.is_empty();
+    let program = || timing_program(&own.model, name, time_step_s);
+    if let Some([forward, inverse]) = is_c.then(|| timed(&program(), name, folder)).flatten() {
+        return Ok(format!(
+            "Cost of the C, by cc -O2 on this computer: {forward:.0} ns a sample forward, {inverse:.0} ns inverse\n"
+        ));
+    }
+    let volts = timed_command(&own.model, time_step_s);
+    let mut best_s = f64::INFINITY;
+    for _ in 0..5 {
+        let begun = Instant::now();
+        let moved = own.model.simulate(&volts, time_step_s);
+        moved.map_err(|error| refused(args, &error))?;
+        best_s = best_s.min(begun.elapsed().as_secs_f64());
+    }
+    let ns = 1e9 * best_s / volts.len() as f64;
+    let why = if is_c { "; the C could not be compiled by cc and run" } else { "" };
+    Ok(format!(
+        "Cost of the actuator in Rust, the original, on this computer: {ns:.0} ns a sample forward{why}\n"
+    ))
+}
+
+/// ns per sample of the forward and the inverse step of the C in a folder; none if it cannot be compiled and run.
+fn timed(program: &str, name: &str, folder: &Path) -> Option<[f64; 2]> {
+    let file = format!("{name}.c");
+    let arguments = ["-std=c99", "-O2", "-I.", "-o", ".timing", "-x", "c", "-", &file, "-lm"];
+    let mut command = Command::new("cc");
+    command.args(arguments).current_dir(folder).stdin(Stdio::piped());
+    let mut compiler = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().ok()?;
+    let given = compiler.stdin.take()?.write_all(program.as_bytes());
+    let is_compiled = compiler.wait().is_ok_and(|status| status.success()) && given.is_ok();
+    let own = folder.join(".timing");
+    let ran = is_compiled.then(|| Command::new(&own).output().ok()).flatten();
+    let _ = std::fs::remove_file(&own);
+    let printed = String::from_utf8(ran?.stdout).ok()?;
+    let numbers: Vec<f64> = printed.split_whitespace().map_while(|n| n.parse().ok()).collect();
+    <[f64; 3]>::try_from(numbers).ok().map(|[forward, inverse, _]| [forward, inverse])
 }
 
 fn refused(args: &ExportArgs, message: &dyn Display) -> SimError {

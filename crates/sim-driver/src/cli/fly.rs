@@ -9,11 +9,14 @@ use crate::flight::{Beside, flight_csv, flight_html, flown};
 use crate::output::{Format, Printable, print};
 use crate::problem::Problems;
 use rotor_flight::{BESIDE_FILES, draws_csv, failures_csv, is_own_table, margins_csv};
+use study_text::known::FLIGHT_FILES;
 
 pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let loaded = overridden(load_case(&args.case)?, args.inflow);
     let out = folder_or(args.out.as_ref(), &args.case);
     refuse_unwritable(&out)?;
+    args.force.files(&out, FLIGHT_FILES)?;
+    args.force.files(&out, &BESIDE_FILES)?;
     if let Some(draws) = args.draws {
         let mut problems = Problems::default();
         check_range(&mut problems, "--draws", draws as f64, [1.0, 1e5], "", "50 draws, say");

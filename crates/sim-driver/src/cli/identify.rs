@@ -1,13 +1,10 @@
 //! `hhc identify`.
 
 use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
-use super::{refuse_inputs, warn, write_texts};
+use super::{ForceArgs, refuse_inputs, warn, write_texts};
 use crate::SimError;
-use crate::actuator_use::{samples_csv, used};
-use crate::files::{
-    DATASET, Folder, Source, read_dataset, refuse_inside, refuse_other_kind, refuse_other_text,
-    write_atomic,
-};
+use crate::actuator_use::used;
+use crate::files::{DATASET, Folder, Source, read_dataset, refuse_inside, write_atomic};
 use crate::output::{Format, Printable, counted, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
@@ -19,6 +16,7 @@ use bench_study::identification::{
     BenchIdentification, Comparing, IdentifyResult, MODELS_COMPARED,
 };
 use bench_study::page::{bench_page, curves_page};
+use bench_study::samples_csv;
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
 use measured_data::{EvenRecord, default_model_file};
 use preisach_dyn::identify::{Family, Settings};
@@ -53,12 +51,8 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     if let Some(path) = &page_path {
         refuse_inside(&args.bench, path)?;
     }
-    if !args.force {
-        refuse_other_kind(output, "Actuator")?;
-        if let Some(path) = &page_path {
-            refuse_other_text(path, MADE_HERE, "page of hhc")?;
-        }
-    }
+    args.force.actuator(output)?;
+    args.force.holding(page_path.as_deref(), MADE_HERE, "page of hhc")?;
     let data = read_dataset(&Folder::Disk(args.bench.clone()))?;
     warn(data.warnings(), args.format.form());
     let (glances, subject) = bench_study::glances(&data);
@@ -90,6 +84,9 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     };
     let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
     warn(&actuator_warnings(&found.stored, place), args.format.form());
+    if let (Some(folder), Some(figures)) = (&args.figures, &found.figures) {
+        args.force.tables(folder, figures)?;
+    }
     write_actuator(&found.stored, output)?;
     if let Some(path) = &page_path {
         write_atomic(path, found.page.as_bytes())?;
@@ -126,7 +123,7 @@ fn page_path(model: &Path) -> Option<PathBuf> {
 
 pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
     put_to_work(
-        args.output.as_ref(),
+        (args.output.as_ref(), args.force),
         [&args.actuator, &args.input],
         args.format,
         StoredActuator::predicted,
@@ -135,7 +132,7 @@ pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
 
 pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
     put_to_work(
-        args.output.as_ref(),
+        (args.output.as_ref(), args.force),
         [&args.actuator, &args.wanted],
         args.format,
         StoredActuator::inverted,
@@ -144,7 +141,7 @@ pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
 
 /// Uses an actuator on a record; writes and prints what it did.
 fn put_to_work(
-    output: Option<&PathBuf>,
+    (output, force): (Option<&PathBuf>, ForceArgs),
     [actuator, record]: [&PathBuf; 2],
     format: Format,
     of: fn(&StoredActuator, &EvenRecord) -> Result<ActuatorUse, UseError>,
@@ -153,7 +150,14 @@ fn put_to_work(
     refuse_inputs(Some(record), output)?;
     let own = used([actuator, record], of)?;
     if let Some(path) = output {
-        write_atomic(path, samples_csv(&own).as_bytes())?;
+        let samples = samples_csv(&own);
+        if own.error.is_some() {
+            force.table(Some(path), &samples)?;
+        } else {
+            // a record has this header too: only the same table is known
+            force.holding(Some(path), &samples, "table of hhc")?;
+        }
+        write_atomic(path, samples.as_bytes())?;
     }
     print(&own.render(format)?)
 }

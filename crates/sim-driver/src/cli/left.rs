@@ -3,13 +3,14 @@
 use super::say;
 use crate::SimError;
 use crate::case::LoadedCase;
-use crate::files::write_atomic;
+use crate::files::{remove_own, write_atomic};
 use crate::progress::Progress;
 use crate::report::{StudyReport, histories_csv, measured_csv, report_html, sensitivity_csv};
 use crate::results::{Figures, RESULT_FILE, RunResult, StoredResult};
 use crate::run::{RunOutcome, steps_of, stored_of};
 use rotor_study::{Assumptions, robustness_flights, robustness_maps, sensitivities};
 use std::path::Path;
+use study_text::known::RUN_FILES;
 use study_text::{
     airloads_csv, blade_loads_csv, costs_csv, fronts_csv, robustness_csv, tip_csv, vortices_csv,
 };
@@ -124,13 +125,12 @@ fn filled<T>(rows: &[T]) -> Option<&[T]> {
 
 /// Writes a file; without a text, one that an earlier run has left goes.
 fn write_or_remove(path: &Path, text: Option<String>) -> Result<(), SimError> {
-    match text {
-        Some(text) => Ok(write_atomic(path, text.as_bytes())?),
-        None if path.is_file() => {
-            std::fs::remove_file(path).map_err(|error| SimError::not_written(path, &error))
-        }
-        None => Ok(()),
+    if let Some(text) = text {
+        return Ok(write_atomic(path, text.as_bytes())?);
     }
+    let known = RUN_FILES.iter().find(|(name, _)| path.ends_with(name));
+    remove_own(path, |text| known.is_some_and(|(_, held)| text.contains(held)))?;
+    Ok(())
 }
 
 /// Says of a run that failed that the results in its folder are not its own.

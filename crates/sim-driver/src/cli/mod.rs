@@ -23,16 +23,19 @@ pub use args::{
 use crate::SimError;
 use crate::case::{InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::choices::check_range;
-use crate::files::{refuse_input, write_atomic};
+use crate::files::{
+    refuse_foreign, refuse_input, refuse_other_kind, refuse_other_text, write_atomic,
+};
 use crate::output::{Format, warnings_text};
 use crate::problem::Problems;
 use crate::progress::{is_quiet, set_quiet};
 use crate::sweep::at_advance_ratio;
-use clap::Parser;
+use clap::{Args, Parser};
 use std::fmt::Display;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use study_text::known::Known;
 
 /// Runs the command with the arguments of the process.
 ///
@@ -95,7 +98,9 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
         Some(Command::Init { file }) => data::init(file),
         Some(Command::Completions { shell }) => data::completions(*shell),
         Some(Command::Man { name }) => data::man(name.as_deref()),
-        Some(Command::Report { dir, page, format }) => run::report(dir, page, format.form()),
+        Some(Command::Report { dir, page, force, format }) => {
+            run::report(dir, (page, *force), format.form())
+        }
     }
 }
 
@@ -165,6 +170,48 @@ pub fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> Loa
 /// Refuses to write to a file that is read, where both are given.
 fn refuse_inputs(read: Option<&Path>, written: Option<&PathBuf>) -> Result<(), SimError> {
     read.zip(written).map_or(Ok(()), |(read, written)| Ok(refuse_input(read, written)?))
+}
+
+/// Leave to replace what is in the way.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct ForceArgs {
+    /// Replace files in the way even if hhc did not write them.
+    #[arg(long)]
+    force: bool,
+}
+
+impl ForceArgs {
+    /// Refuses to replace a table with another header line, if one is to be written.
+    fn table(self, path: Option<&Path>, text: &str) -> Result<(), SimError> {
+        let head = text.split_inclusive('\n').next().unwrap_or_default();
+        self.holding(path, head, "table of hhc")
+    }
+
+    /// Refuses to replace a file that does not hold a text which is in all files of a kind, if one is to be written.
+    fn holding(self, path: Option<&Path>, held: &str, kind: &'static str) -> Result<(), SimError> {
+        let path = path.filter(|_| !self.force);
+        path.map_or(Ok(()), |path| Ok(refuse_other_text(path, held, kind)?))
+    }
+
+    /// Refuses to replace files of a folder that hold something else than those of `hhc`.
+    fn files(self, folder: &Path, known: &Known) -> Result<(), SimError> {
+        if self.force {
+            return Ok(());
+        }
+        Ok(refuse_foreign(folder, known.iter().copied())?)
+    }
+
+    /// Refuses to replace tables of a folder with other header lines than those to be written.
+    fn tables(self, folder: &Path, texts: &[(String, String)]) -> Result<(), SimError> {
+        let is_table = |name: &str| [".csv", ".vtp"].iter().any(|ending| name.ends_with(ending));
+        let tables = texts.iter().filter(|(name, _)| is_table(name));
+        tables.into_iter().try_for_each(|(name, text)| self.table(Some(&folder.join(name)), text))
+    }
+
+    /// Refuses to replace a file that is no actuator file.
+    fn actuator(self, path: &Path) -> Result<(), SimError> {
+        if self.force { Ok(()) } else { Ok(refuse_other_kind(path, "Actuator")?) }
+    }
 }
 
 #[cfg(test)]

@@ -15,6 +15,7 @@ use rotor_fem::GyroscopicTerms;
 use rotor_flight::{InTimeQuestion, wake_in_time, wake_in_time_csv};
 use rotor_study::{AboutState, FAN_SPEEDS, ModesQuestion};
 use study_text::fan_csv;
+use study_text::known::{IN_TIME_FILES, WAKE_FILES};
 
 pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     refuse_inputs(args.case.as_deref(), args.fan.as_ref())?;
@@ -32,7 +33,9 @@ pub(super) fn modes(args: &ModesArgs) -> Result<(), SimError> {
     let result = modes_of_case(&loaded, &question)?;
     let text = result.render(args.format)?;
     if let Some(path) = &args.fan {
-        write_atomic(path, fan_csv(&result).as_bytes())?;
+        let fan = fan_csv(&result);
+        args.force.table(Some(path), &fan)?;
+        write_atomic(path, fan.as_bytes())?;
     }
     print(&text)
 }
@@ -41,6 +44,8 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     let loaded = moved_to(case_or_paper(args.case.as_ref())?, args.mu)?;
     if let Some(folder) = &args.out {
         refuse_unwritable(folder)?;
+        let files = if args.in_time.is_some() { IN_TIME_FILES } else { WAKE_FILES };
+        args.force.files(folder, files)?;
     }
     if let Some(revolutions) = args.in_time {
         return in_time(&loaded, revolutions, args);
@@ -49,6 +54,7 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     let (result, files) = Progress::during("free wake and trim", find)?;
     warn(&result.warnings, Format::Details);
     if let Some(folder) = &args.out {
+        args.force.tables(folder, &files)?;
         write_texts(folder, files)?;
     }
     print(&result.render(args.format)?)?;

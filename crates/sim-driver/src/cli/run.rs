@@ -2,9 +2,9 @@
 
 use super::args::{RunArgs, StudyArgs};
 use super::left::{Scope, note_earlier, store, write_shown};
-use super::speeds::run_speeds;
+use super::speeds::{folder_at, run_speeds};
 use super::sweep::{PageArgs, is_merged, report_merged};
-use super::{folder_or, overridden, warn};
+use super::{ForceArgs, folder_or, overridden, warn};
 use crate::SimError;
 use crate::case::{LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::files::refuse_unwritable;
@@ -18,10 +18,12 @@ use crate::sweep::refuse_diverged;
 use crate::terminal::{details, summary};
 use rotor_study::Assumptions;
 use std::path::Path;
+use study_text::known::{MERGED_FILES, RUN_FILES, SWEEP_PAGE};
 
 pub(super) fn study(args: &StudyArgs) -> Result<(), SimError> {
     let loaded = overridden(shipped_case(PAPER_CASE)?, Some(args.inflow));
     let scope = Scope { sensitivity: Some(Assumptions::WithoutWake), robustness: false };
+    args.force.files(&args.out, RUN_FILES)?;
     run_and_store(&loaded, &args.out, args.format.form(), scope)
 }
 
@@ -32,13 +34,23 @@ pub(super) fn run(args: &RunArgs) -> Result<(), SimError> {
     let scope = Scope { sensitivity, robustness: args.robustness };
     let format = args.format.form();
     if args.mu.is_empty() {
+        args.force.files(&out, RUN_FILES)?;
         return run_and_store(&loaded, &out, format, scope);
+    }
+    args.force.files(&out, MERGED_FILES)?;
+    for &mu in &args.mu {
+        args.force.files(&folder_at(&out, mu), RUN_FILES)?;
     }
     run_speeds(&loaded, &out, (scope, format), &args.mu)
 }
 
-pub(super) fn report(dir: &Path, page: &PageArgs, format: Format) -> Result<(), SimError> {
+pub(super) fn report(
+    dir: &Path,
+    (page, force): (&PageArgs, ForceArgs),
+    format: Format,
+) -> Result<(), SimError> {
     if is_merged(dir) {
+        force.files(dir, SWEEP_PAGE)?;
         return report_merged(dir, page);
     }
     if page.is_given() {
@@ -53,6 +65,7 @@ pub(super) fn report(dir: &Path, page: &PageArgs, format: Format) -> Result<(), 
     let stored = StoredResult::read(dir)?;
     let figures = figures(&stored.result, &stored.setting()?);
     let report = StudyReport { stored: &stored, figures: &figures };
+    force.files(dir, RUN_FILES)?;
     write_shown(&report, dir)?;
     show(&report, dir, format)
 }

@@ -66,6 +66,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
 /// Writes the CSV file asked for; what its numbers need said goes to standard error.
 fn write_csv(args: &SectionArgs, csv: &str, remarks: &[String]) -> Result<(), SimError> {
     let Some(path) = &args.output else { return Ok(()) };
+    args.force.table(Some(path), csv)?;
     for remark in remarks {
         say(&format_args!("note: {remark}"));
     }

@@ -25,7 +25,7 @@ use std::path::{Path, PathBuf};
 const OPTION: &str = "--mu";
 
 /// Folder of the result at an advance ratio.
-fn folder_at(out: &Path, advance_ratio: f64) -> PathBuf {
+pub(super) fn folder_at(out: &Path, advance_ratio: f64) -> PathBuf {
     out.join(format!("mu_{advance_ratio}"))
 }
 

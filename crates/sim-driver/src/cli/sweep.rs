@@ -1,7 +1,7 @@
 //! `hhc sweep`: many variations of a case, on one machine or as a Slurm array.
 
 use super::case_runner::CaseRunner;
-use super::{say, write_texts};
+use super::{ForceArgs, say, write_texts};
 use crate::SimError;
 use crate::case::load_case;
 use crate::files::{Folder, RonIndex, Source, missing_file, refuse_unwritable};
@@ -18,6 +18,7 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use study_text::known::{MERGED_FILES, SWEEP_PAGE};
 
 /// `hhc sweep`.
 #[derive(Debug, Clone, Subcommand)]
@@ -44,6 +45,8 @@ pub enum SweepAction {
         /// Leave out what is missing, damaged or foreign.
         #[arg(long)]
         partial: bool,
+        #[command(flatten)]
+        force: ForceArgs,
     },
     /// Write sweep.html: maps and carpets over two axes, parallel coordinates, reduction of J against power.
     Report {
@@ -51,6 +54,8 @@ pub enum SweepAction {
         sweep: SweepArgs,
         #[command(flatten)]
         page: PageArgs,
+        #[command(flatten)]
+        force: ForceArgs,
     },
     /// Print the sbatch script of an array that runs the sweep.
     Slurm {
@@ -132,10 +137,14 @@ pub(super) fn sweep(action: &SweepAction) -> Result<(), SimError> {
             run_part(&Sweep::of(sweep)?, (part, failed), sweep.format)
         }
         SweepAction::Status(args) => show_status(&Sweep::of(args)?, args.format),
-        SweepAction::Merge { sweep, partial } => {
+        SweepAction::Merge { sweep, partial, force } => {
+            force.files(&sweep.out(), MERGED_FILES)?;
             write_merged(&Sweep::of(sweep)?, *partial, sweep.format)
         }
-        SweepAction::Report { sweep, page } => write_page(sweep, &page.choice()),
+        SweepAction::Report { sweep, page, force } => {
+            force.files(&sweep.out(), SWEEP_PAGE)?;
+            write_page(sweep, &page.choice())
+        }
         SweepAction::Slurm { sweep, tasks, cpus } => print_script(sweep, *tasks, *cpus),
     }
 }

@@ -1,6 +1,7 @@
 //! `hhc predict` and `hhc invert`.
 
 use crate::place::{Place, write_bench};
+use std::process::Command;
 
 /// A motion that does not repeat, within reach of the bench.
 fn motion(column: &str, scale: f64) -> String {
@@ -64,7 +65,20 @@ fn an_actuator_goes_out_into_other_languages() {
             assert!(told.contains(name), "{told}");
             assert!(place.read(&format!("{out}/{name}")).len() > 500, "{name}");
         }
+        // what was measured and where: C by the compiler of this computer, of others the original
+        let cost = told.lines().find(|line| line.starts_with("Cost of the ")).unwrap();
+        let is_compiled = to == "c" && Command::new("cc").arg("--version").output().is_ok();
+        let of =
+            if is_compiled { "Cost of the C, by cc -O2" } else { "Cost of the actuator in Rust" };
+        assert!(cost.starts_with(of) && cost.contains(" ns a sample forward"), "{told}");
+        assert_eq!(cost.contains("ns inverse"), is_compiled, "{told}");
+        let files = place.listing().into_iter().filter(|name| name.starts_with(&out)).count();
+        assert_eq!(files, names.len(), "{:?}", place.listing());
     }
+    // without -o: named by file and form, in the working folder
+    place.hhc(&["export", "bench/../a.ron", "--to", "json"]).done();
+    assert!(place.read("a_json/flap_actuator.json").len() > 500);
+    place.hhc(&["export", "a.ron", "--to", "json"]).rejected(&["a_json exists already"]);
     place.hhc(&["export", "a.ron", "--to", "c", "-o", "out_c"]).rejected(&["out_c"]);
     let bad = ["export", "a.ron", "--to", "c", "--name", "2 flaps", "-o", "b"];
     place.hhc(&bad).rejected(&["a.ron", "2 flaps"]);

@@ -112,7 +112,8 @@ fn a_command_outside_the_actuators_range() {
             "bench/slow.csv:",
             "command_V: the command ",
             "lies outside command_range_V (-20, 140) of dataset.ron",
-            "more problems of this kind",
+            "the records need `command_range_V: (-20, 150)` or more",
+            "Beyond it: slow, one_large, five;",
         ],
     );
 }

@@ -279,6 +279,121 @@ fn a_record_at_rest_is_data() {
     ]);
 }
 
+/// Rests alone go in; that no model can come of them is said where one is asked for.
+#[test]
+fn rests_alone_go_in_and_identify_nothing() {
+    let place = Place::new();
+    let noise = |i: u32| 120.0 + 0.3 * (7919.0 * f64::from(i)).sin();
+    let row = |i: u32, volt: f64| format!("{:.3},{volt},{:.5}\n", 1e-3 * f64::from(i), noise(i));
+    let rest = |volt: f64| -> String {
+        let rows = (0..2000).map(|i| row(i, volt));
+        std::iter::once("time_s,command_V,displacement_um\n".to_owned()).chain(rows).collect()
+    };
+    place.write("low.csv", &rest(65.0));
+    place.write("high.csv", &rest(400.0));
+    let ran = place.hhc(&["import", "low.csv", "high.csv", "-o", "rests"]);
+    let said = "low.csv:2:1: command_V: every sample is 65 V, as in every other record";
+    assert!(ran.err.contains(said), "{}", ran.err);
+    let text = ran.done();
+    assert!(text.contains("at rest 65 V; noise 0.2") && text.contains("at rest 400 V"), "{text}");
+    let check = place.hhc(&["check", "rests"]);
+    assert!(check.err.contains("as in every other record"), "{}", check.err);
+    check.done();
+    let before = place.listing();
+    let missing =
+        ["runs", "the input rests in every record (low, high)", "a slow sine or triangle"];
+    place.hhc(&["identify", "rests", "-o", "a.ron"]).rejected(&missing);
+    assert_eq!(place.listing(), before);
+    // the same of any two channels
+    let plain = rest(65.0).replacen("command_V,displacement_um", "current_A,force_N", 1);
+    place.write("force.csv", &plain);
+    place.hhc(&["import", "force.csv", "-o", "loops"]).done();
+    place.hhc(&["check", "loops"]).done();
+    place.hhc(&["identify", "loops", "-o", "b.ron"]).rejected(&missing[2..]);
+    // beside records that move
+    place.hhc(&["diagnose", "a.ron", "--data", "rests", "-o", "out"]).rejected(&["a.ron"]);
+}
+
+/// A bench by hand whose range is that of another actuator: what to write is said, and works at the first try.
+#[test]
+fn an_actuator_of_another_range_is_told_its_range() {
+    let place = Place::new();
+    let written = |name: &str, text: &str, volts: f64| {
+        let rows = text.lines().skip(1).map(|line| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{},{:.3},{}\n", cells[0], volts * cells[1], cells[2])
+        });
+        let head = std::iter::once("time_s,command_V,displacement_um\n".to_owned());
+        place.write(&format!("bench/{name}"), &head.chain(rows).collect::<String>());
+    };
+    let dataset = |range: &str| {
+        let text = format!(
+            "(kind: ActuatorBench, title: \"t\", runs: [(id: \"small\", file: \"small.csv\", role: Reference), (id: \"large\", file: \"large.csv\", role: Reference)]{range})"
+        );
+        place.write("bench/dataset.ron", &text);
+    };
+    // 100 to 1300 V, and 28 times that of a common stack
+    for (volts, range, given) in [(10.0, "(100, 1300)", ""), (40.0, "(400, 5200)", "")] {
+        written("small.csv", &recorded(2.0, |t| 70.0 + 5.0 * (TAU * t).sin(), |y| y), volts);
+        written("large.csv", &recorded(4.0, |t| 70.0 + 60.0 * (TAU * t).sin(), |y| y), volts);
+        dataset(given);
+        let err = place.hhc(&["check", "bench"]).rejected(&[
+            "bench/small.csv:2:1: command_V: the command ",
+            "which stands for the one that dataset.ron does not give",
+            &format!("the records need `command_range_V: {range}` or more in dataset.ron"),
+            "Beyond it: small, large",
+        ]);
+        assert!(!err.contains("mV") && err.lines().count() < 4, "{err}");
+        dataset(&format!(", command_range_V: {range}"));
+        place.hhc(&["check", "bench"]).done();
+    }
+}
+
+/// A ceramic driven through its coercive field: the strain is even in the voltage, and no model here is.
+#[test]
+fn a_butterfly_is_called_so() {
+    let place = Place::new();
+    let mut text = "t / ms,U / V,s / mm\n".to_owned();
+    for i in 0..4000 {
+        let (sin, cos) = (TAU * 1e-3 * f64::from(i)).sin_cos();
+        let volt = 1500.0 * sin;
+        // the polarisation switches at +-600 V, on the way up and on the way down
+        let polarisation = ((volt - 600.0_f64.copysign(cos)) / 150.0).tanh();
+        let strain = polarisation.powi(2) + 4e-4 * volt * polarisation;
+        writeln!(text, "{i},{volt:.3},{:.7}", 0.02 * strain).unwrap();
+    }
+    place.write("butterfly.csv", &text);
+    let ran = place.hhc(&["import", "butterfly.csv"]);
+    let said = "record butterfly: the output runs through two cycles in each cycle of the input";
+    assert!(ran.err.contains(said), "{}", ran.err);
+    let text = ran.done();
+    assert!(text.contains("sine 1 Hz, 4 cycles, 1500 V"), "{text}");
+    place.hhc(&["identify", "butterfly"]).failed(
+        2,
+        &["a butterfly", "No model here holds one", "one wing of it", "set command_range_V"],
+    );
+}
+
+/// Quotients of the standards as headers, symbols of quantities that are those of units too.
+#[test]
+fn headers_of_the_standards_are_read() {
+    let place = Place::new();
+    let body = recorded(4.0, sine, |y| y);
+    let body = body.split_once('\n').unwrap().1;
+    place.write("din.csv", &format!("t / s,U / V,s / um\n{body}"));
+    place.hhc(&["import", "din.csv", "-o", "din"]).done();
+    let head = "time_s,command_V,displacement_um\n";
+    assert!(place.read("din/din.csv").starts_with(head), "{}", place.read("din/din.csv"));
+    // what is not known is asked for in a way that works as it stands
+    place.write("odd.csv", &format!("t / s,U / V,Weg\n{body}"));
+    let err = place.hhc(&["import", "odd.csv", "-o", "odd"]).rejected(&["`Weg` has no known unit"]);
+    let (_, remedy) = err.split_once("--columns '").unwrap();
+    let (remedy, _) = remedy.split_once('\'').unwrap();
+    assert_eq!(remedy, "t_s=#1,command_V=#2,displacement_um=Weg");
+    place.hhc(&["import", "odd.csv", "-o", "odd", "--columns", remedy]).done();
+    assert_eq!(place.read("odd/odd.csv"), place.read("din/din.csv"));
+}
+
 /// A laser reads the same motion from a tenth of a metre away.
 #[test]
 fn an_offset_of_the_sensor_changes_no_result() {

@@ -20,6 +20,7 @@ mod manners;
 mod measured;
 mod place;
 mod points;
+mod replace;
 mod rotor;
 mod screen;
 mod stages_doc;

@@ -2,6 +2,7 @@
 
 use crate::diagnosis_page::{costs_least, page, section, shows_residuals};
 use crate::place::Place;
+use crate::replace::replaces_its_own_alone;
 use std::fmt::Write;
 
 const COLUMNS: [&str; 4] = ["x1_cos_um", "x1_sin_um", "x2_cos_um", "x2_sin_um"];
@@ -149,7 +150,9 @@ fn the_suspect_that_was_planted_is_named_with_its_amount() {
         );
     }
     let place = folder(NOMINAL, 7);
-    let text = place.hhc(&["diagnose", "--table", "t", "-o", "out"]).done();
+    let args = ["diagnose", "--table", "t", "-o", "out"];
+    let text = place.hhc(&args).done();
+    replaces_its_own_alone(&place, &args, "out/");
     let page = page(&place, "out");
     assert!(section(&page, "yardstick").contains("an amount that matters"));
     assert!(page.find("yardstick").unwrap() < page.find("\"compared").unwrap(), "it comes first");
