@@ -66,7 +66,9 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
 /// Writes the CSV file asked for; what its numbers need said goes to standard error.
 fn write_csv(args: &SectionArgs, csv: &str, remarks: &[String]) -> Result<(), SimError> {
     let Some(path) = &args.output else { return Ok(()) };
-    args.force.table(Some(path), csv)?;
+    // more columns may follow, as with stall
+    let second = csv.match_indices(',').nth(1).map_or(csv.len(), |(at, _)| at);
+    args.force.holding(Some(path), &csv[..second], "table of hhc")?;
     for remark in remarks {
         say(&format_args!("note: {remark}"));
     }
