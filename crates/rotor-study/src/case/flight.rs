@@ -105,7 +105,7 @@ section! {
         /// value of T is its scale, some 1e-12 to 1e-10.
         pub rate_weight: f64 = 0.0, Within(0.0, 1e6), "1/V^2", "0 leaves it out";
         /// Chance that a flap acts, which the control counts on: below 100 % flaps lean less on each other.
-        pub flap_survival_percent: f64 = 100.0, Within(1.0, 100.0), "%", "90 % where a flap that fails must not shake the hub";
+        pub flap_survival_percent: f64 = 90.0, Within(1.0, 100.0), "%", "90 % is usual; 100 % counts on flaps that never fail";
         /// Whether the adaptive controller is told `noise_percent`. `Untold`: it estimates the noise.
         pub noise_notice: Notice = Notice::Untold, Any, "", "";
         /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.
