@@ -69,7 +69,7 @@ section! {
         pub ramp_s: f64 = 20.0, Within(0.0, 3600.0), "s", "20 s is usual; 0 is a step";
         /// Advance ratios at which the rotor is trimmed and linearised, evenly from start to end. Loads are linear
         /// in between.
-        pub knots: usize = 11, Count(2, 100), "", "11 from 0.15 to 0.30 keep J within 2 % of J0";
+        pub knots: usize = 21, Count(2, 100), "", "21 from 0.15 to 0.30 keep J within 2 % of J0";
         /// A step of the thrust, such as `(at_s: 40, ratio: 1.1)`; left out, none.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub thrust_step: Option<ThrustStep> = None, Any, "", "";
