@@ -225,6 +225,13 @@ pub(crate) fn check_gain(gain: f64) -> Result<(), ControlError> {
     check_range(gain > 0.0 && gain <= 1.0, "relaxation gain", gain, "above 0, at most 1")
 }
 
+/// Accepts the chance that a flap acts.
+pub(crate) fn check_chance(chance: f64) -> Result<(), ControlError> {
+    let (what, expected) =
+        ("chance that a flap acts", "above 0 and at most 1, 1 for flaps that last");
+    check_range(chance > 0.0 && chance <= 1.0, what, chance, expected)
+}
+
 /// Accepts a finite number above zero.
 pub(crate) fn check_positive(what: &'static str, value: f64) -> Result<(), ControlError> {
     check_range(value.is_finite() && value > 0.0, what, value, "a finite number above 0")

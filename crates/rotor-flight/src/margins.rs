@@ -97,7 +97,7 @@ impl FlyingCase<'_> {
         let t_at = |mu: f64| flight.own_t_in(at(mu), &steps);
         let knots = self.path().advance_ratios();
         let each = knots.iter().map(|&mu| t_at(mu)).collect::<Result<Vec<TMatrix>, _>>()?;
-        let (weights, step) = (&flight.settings.load_weights, flight.settings.step());
+        let (weights, step) = (&flight.settings.load_weights, flight.settings.step(&flight.layout));
         let point = |(k, &advance_ratio): (usize, &f64)| -> Result<MarginPoint, FlightError> {
             let state = at(advance_ratio);
             let law = FeedbackLaw::new(&flight.t_in(state, &known)?, weights)?;

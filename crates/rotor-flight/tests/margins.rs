@@ -33,6 +33,8 @@ fn values(harmonics: &[usize]) -> FlightValues {
         controllers: vec![FlightController::Fixed, FlightController::Adaptive],
         thrust_step: None,
         failed_flap: None,
+        // theory knows the radius of flaps that all act
+        flap_survival_percent: 100.0,
         ..FlightValues::default()
     }
 }
@@ -80,6 +82,40 @@ fn a_t_of_one_speed_holds_as_far_as_its_flights_do() {
     println!("holds up to {end:.4}: flown {inside:.3} below and {outside:.3} above");
     assert!(slowest.holds_within[0].is_none() && (0.15..0.35).contains(&end));
     assert!(inside < 1.0 && outside > 1.0, "{inside} {outside}");
+}
+
+fn least(values: &[f64]) -> f64 {
+    values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// A loop that counts on flaps that may fail, as flights do by default, has another radius, and flies by it. All flaps may err by a
+/// little less, one alone by much more.
+#[test]
+fn the_radius_knows_flaps_that_may_fail() {
+    let case = case();
+    let by_default = FlightValues::default().flap_survival_percent;
+    let of = |flap_survival_percent: f64| {
+        let values = FlightValues { flap_survival_percent, ..values(&[4]) };
+        let flying = FlyingCase::new(&case, &values, &ideal()).unwrap();
+        let point = flying.margins().unwrap().sets.remove(0).points.remove(0);
+        (point, growth(&flying, 4, 0.15, 0.35))
+    };
+    let ((sure, _), (own, flown)) = (of(100.0), of(by_default));
+    let radius = own.whole_step_radius[2];
+    println!(
+        "{:.3} of flaps that all act, {radius:.3}, flown {flown:.3}",
+        sure.whole_step_radius[2]
+    );
+    assert!((flown / radius - 1.0).abs() < 0.05, "{radius} {flown}");
+    assert!((sure.whole_step_radius[2] / radius - 1.0).abs() > 0.05, "{radius}");
+    let (phase, of_sure) = (own.common_phase_deg, sure.common_phase_deg);
+    assert!(phase < of_sure - 1.0 && phase > of_sure - 10.0, "{phase} {of_sure}");
+    let (least, of_sure) = (least(&own.flap_overshoot_deg), least(&sure.flap_overshoot_deg));
+    println!(
+        "J overshoots with one flap off by {least:.0} deg, {of_sure:.0} of flaps that all act"
+    );
+    assert!(least > 2.0 * of_sure, "{least} {of_sure}");
+    assert!((own.radius[0] - 0.5).abs() < 1e-3, "T that is right: {own:?}");
 }
 
 /// A T that is handed in is that of the loop, not of the rotor: one that is turned by 60 deg has the radius of theory.

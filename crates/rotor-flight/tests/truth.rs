@@ -12,11 +12,11 @@ use rotor_response::{Condition, InstantDrive, RotorInTime};
 use rotor_study::case::Case;
 use rotor_study::{Bias, HUB_OUTPUTS, TrimmedRotor, scaled, weighted};
 
-/// The knots of a flight section by default: 0.15 to 0.30 in ten parts.
-const PARTS: u32 = 10;
-const PART: f64 = 0.015;
+/// The knots of a flight section by default: 0.15 to 0.30 in twenty parts.
+const PARTS: u32 = 20;
+const PART: f64 = 0.0075;
 /// Half way between knots, where interpolation errs most.
-const CONDITIONS: [f64; 2] = [0.15 + 4.5 * PART, 0.15 + 9.5 * PART];
+const CONDITIONS: [f64; 2] = [0.15 + 8.5 * PART, 0.15 + 18.5 * PART];
 /// Cycles of a flight: the loop closes from zero control.
 const CYCLES: usize = 16;
 const CYCLE_REV: [usize; 2] = [1, 2];

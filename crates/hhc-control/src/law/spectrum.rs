@@ -1,10 +1,11 @@
 //! Whether a loop with a constant T contracts: the spectral radius of its iteration.
 
-use crate::law::Proximal;
+use crate::law::{Proximal, Quadratic};
 use crate::{ControlError, FeedbackLaw, OperatingPoint, TMatrix, error};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
-/// The step of a loop with fixed cycles: `u <- u + gain (argmin J + s |u - u_here|^2  -  u_here)`.
+/// The step of a loop with fixed cycles: `u <- u + gain (argmin J + s |u - u_here|^2  -  u_here)`, the blocks of `T'WT` between two
+/// flaps times `q`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RelaxedStep {
     /// `rho`, 1/V^2, 0 or above.
@@ -13,17 +14,22 @@ pub struct RelaxedStep {
     pub rate_weight: f64,
     /// Part of the way that a step goes, above 0 and at most 1.
     pub gain: f64,
+    /// `q`, the chance that a flap acts, above 0 and at most 1.
+    pub flap_survival: f64,
+    /// Controls of one flap, which stand together; matters where `q` is below 1.
+    pub controls_of_flap: usize,
 }
 
 impl RelaxedStep {
-    /// A step without weights that goes a part of the way.
+    /// A step without weights that goes a part of the way, of flaps that all act.
     pub fn of_gain(gain: f64) -> Self {
-        Self { rho: 0.0, rate_weight: 0.0, gain }
+        Self { rho: 0.0, rate_weight: 0.0, gain, flap_survival: 1.0, controls_of_flap: 1 }
     }
 
     pub(super) fn check(&self) -> Result<(), ControlError> {
         error::check_not_negative("control weight rho (1/V^2)", self.rho)?;
         error::check_not_negative("rate weight (1/V^2)", self.rate_weight)?;
+        error::check_chance(self.flap_survival)?;
         error::check_gain(self.gain)
     }
 }
@@ -53,14 +59,16 @@ impl FeedbackLaw {
         rho: f64,
         there: &TMatrix,
     ) -> Result<f64, ControlError> {
-        self.relaxed_spectral_radius(RelaxedStep { rho, rate_weight: 0.0, gain: 1.0 }, there)
+        self.relaxed_spectral_radius(RelaxedStep { rho, ..RelaxedStep::of_gain(1.0) }, there)
     }
 
     /// The same where a step goes only a part of the way and its change is weighted:
     ///
     /// ```text
-    /// M = I - gain (T0' W_Z T0 + (rho + s) I)^-1 (T0' W_Z T + rho I)
+    /// M = I - gain (T0' W_Z T0 + (rho + s) I)^-1 (T0' W_Z T + rho I),                q = 1
+    /// M = (1 - gain) I - gain N^-1 (T0' W_Z (T - T0) - s I),      N = (T0' W_Z T0)_q + (rho + s) I
     /// ```
+    /// `(..)_q`: the blocks between two flaps times `q`. With `T = T0` and `s = 0` it is `1 - gain` whatever `q` is.
     ///
     /// # Errors
     /// As [`Self::iteration_spectral_radius`].
@@ -93,7 +101,37 @@ impl FeedbackLaw {
     ) -> Result<Vec<f64>, ControlError> {
         let target = self.modal_target(at)?;
         let proximal = Proximal { weight: step.rate_weight, control_volt: at.control_volt };
+        if step.flap_survival < 1.0 {
+            return self.aim_of_flaps_that_may_fail(step, &target, proximal);
+        }
         Ok(self.optimum_near(step.rho, &target, proximal))
+    }
+
+    /// The same where the flaps lean less on each other.
+    fn aim_of_flaps_that_may_fail(
+        &self,
+        step: RelaxedStep,
+        target: &DVector<f64>,
+        proximal: Proximal<'_>,
+    ) -> Result<Vec<f64>, ControlError> {
+        let mut form = self.quadratic(step.rho, target);
+        let width = step.controls_of_flap.max(1);
+        for (j, mut column) in form.hessian.column_iter_mut().enumerate() {
+            for (i, value) in column.iter_mut().enumerate() {
+                *value *= if i / width == j / width { 1.0 } else { step.flap_survival };
+            }
+        }
+        let Quadratic { hessian, linear } = form.with(proximal);
+        let least = hessian.amax() * f64::EPSILON * hessian.nrows() as f64;
+        let found = match hessian.clone().cholesky() {
+            Some(factors) => factors.solve(&-linear),
+            // a control that does nothing stays at 0
+            None => hessian
+                .svd(true, true)
+                .solve(&-linear, least)
+                .map_err(|_| ControlError::NoAuthority)?,
+        };
+        Ok(found.iter().copied().collect())
     }
 }
 
@@ -129,13 +167,31 @@ mod tests {
         let t = TMatrix::from_columns(&(0..4).map(column).collect::<Vec<Vec<f64>>>()).unwrap();
         let law = FeedbackLaw::new(&t, &LoadWeights::Identity).unwrap();
         for (rho, rate_weight, gain) in [(0.0, 0.0, 0.5), (0.0, 4.0, 0.5), (1.0, 3.0, 1.0)] {
-            let step = RelaxedStep { rho, rate_weight, gain };
+            let step = RelaxedStep { rho, rate_weight, ..RelaxedStep::of_gain(gain) };
             let found = law.relaxed_spectral_radius(step, &t).unwrap();
             let exact = 1.0 - gain * (4.0 + rho) / (4.0 + rho + rate_weight);
             assert!((found - exact).abs() < 1e-12, "{step:?}: {found} {exact}");
         }
         let wrong = RelaxedStep { rate_weight: -1.0, ..RelaxedStep::of_gain(0.5) };
         assert!(law.relaxed_spectral_radius(wrong, &t).is_err());
+        let never = RelaxedStep { flap_survival: 0.0, ..RelaxedStep::of_gain(0.5) };
+        assert!(law.relaxed_spectral_radius(never, &t).is_err());
+    }
+
+    /// Two flaps with one control each of the same loads, in unison: the sum of their voltages is the error that a wrong gain
+    /// leaves, and `q` makes two flaps weigh `1 + q`. Exact: `1 - gain - gain (gamma - 1) 2 / (1 + q)`.
+    #[test]
+    fn flaps_that_may_fail_slow_the_loop_as_theory_says() {
+        let column: Vec<f64> = (0..6).map(|i| f64::from(i) - 2.0).collect();
+        let t = TMatrix::from_columns(&[column.clone(), column]).unwrap();
+        let law = FeedbackLaw::new(&t, &LoadWeights::Identity).unwrap();
+        for (flap_survival, stronger) in [(0.9, 1.0), (0.9, 4.0), (0.5, 5.0)] {
+            let step = RelaxedStep { flap_survival, ..RelaxedStep::of_gain(0.5) };
+            let there = t.turned(stronger, 0.0).unwrap();
+            let found = law.relaxed_spectral_radius(step, &there).unwrap();
+            let exact = 0.5 - (stronger - 1.0) / (1.0 + flap_survival);
+            assert!((found - exact.abs().max(0.5)).abs() < 1e-9, "{step:?}: {found} {exact}");
+        }
     }
 
     /// A T wrong by a complex factor: the radius is known.

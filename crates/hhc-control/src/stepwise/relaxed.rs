@@ -38,9 +38,15 @@ impl RelaxedSettings {
         }
     }
 
-    /// The step without its limits, of flaps that all act.
-    pub fn step(&self) -> RelaxedStep {
-        RelaxedStep { rho: self.effort_weight, rate_weight: self.rate_weight, gain: self.gain }
+    /// The step without its limits of the controls of a layout.
+    pub fn step(&self, layout: &ControlLayout) -> RelaxedStep {
+        RelaxedStep {
+            rho: self.effort_weight,
+            rate_weight: self.rate_weight,
+            gain: self.gain,
+            flap_survival: self.flap_survival,
+            controls_of_flap: layout.len() / layout.flaps(),
+        }
     }
 }
 
@@ -90,14 +96,7 @@ impl RelaxedController {
         error::check_not_negative("control weight rho (1/V^2)", settings.effort_weight)?;
         error::check_not_negative("rate weight (1/V^2)", settings.rate_weight)?;
         error::check_gain(settings.gain)?;
-        let (what, chance) = ("chance that a flap acts", settings.flap_survival);
-        let is_chance = chance > 0.0 && chance <= 1.0;
-        error::check_range(
-            is_chance,
-            what,
-            chance,
-            "above 0 and at most 1, 1 for flaps that last",
-        )?;
+        error::check_chance(settings.flap_survival)?;
         let limits = &settings.amplitude_limit_volt;
         error::check_length("amplitude limits", limits.len(), layout.pairs())?;
         for &limit in limits.iter().chain([&settings.rate_limit_volt]) {

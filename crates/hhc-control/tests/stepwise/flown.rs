@@ -16,17 +16,25 @@ const MOST_BAD: usize = 5;
 /// Largest amplitude at 3 and at 4/rev. At 4/rev the flaps work against each other: with more a flap that fails leaves
 /// above 1.2 `J0`.
 const LIMIT_VOLT: [f64; 2] = [65.0, 20.0];
+/// Chances that a flap acts which a control counts on: those that never fail, and what flights take by default.
+const SURVIVALS: [f64; 2] = [1.0, 0.9];
 
 fn layout(harmonic: usize) -> ControlLayout {
     ControlLayout::new(2, vec![u32::try_from(harmonic).unwrap()]).unwrap()
 }
 
+/// A controller that counts on flaps.
 fn controller(harmonic: usize) -> RelaxedController {
+    controller_of(harmonic, SURVIVALS[0])
+}
+
+fn controller_of(harmonic: usize, flap_survival: f64) -> RelaxedController {
     let layout = layout(harmonic);
     let settings = RelaxedSettings {
         gain: 0.3,
         amplitude_limit_volt: vec![LIMIT_VOLT[harmonic - 3]; 2],
         rate_limit_volt: 10.0,
+        flap_survival,
         ..RelaxedSettings::of_layout(&layout)
     };
     RelaxedController::new(&layout, 12, settings).unwrap()
@@ -94,7 +102,7 @@ fn as_it_was(share: Option<f64>) -> EstimatorSettings {
 /// `J / J0` of every cycle, without noise, and the controller at the end.
 fn fly(
     rotor: &mut Rotor,
-    harmonic: usize,
+    relaxed: RelaxedController,
     settings: &EstimatorSettings,
     cycles: usize,
     mut event: impl FnMut(usize, &mut Rotor, &mut CycleController),
@@ -102,7 +110,7 @@ fn fly(
     let before = cost(&rotor.z0);
     let t0 = rotor.t.turned(1.2, 0.2).unwrap();
     let start = rotor.measured(&[0.0; 4]);
-    let mut flying = CycleController::new(controller(harmonic), settings, &t0, &start).unwrap();
+    let mut flying = CycleController::new(relaxed, settings, &t0, &start).unwrap();
     let mut ratios = Vec::with_capacity(cycles);
     for cycle in 0..cycles {
         event(cycle, rotor, &mut flying);
@@ -125,17 +133,19 @@ fn t_error(found: &TMatrix, exact: &TMatrix) -> f64 {
     found.relative_difference(exact).unwrap()
 }
 
-/// Noise of 3 %, told or not: 95 % of the seeds stay within 5 points of the optimum, none diverges.
+/// Noise of 3 %, told or not: 95 % of the seeds stay within 5 points of the optimum, none diverges. So they do where the control counts
+/// on flaps that may fail.
 #[test]
 fn noise_leaves_the_loop_at_its_optimum() {
-    for harmonic in [3, 4] {
+    for (harmonic, q) in [3, 4].into_iter().flat_map(|n| SURVIVALS.map(|q| (n, q))) {
         for share in [Some(0.03), None] {
             let mut bad = 0_usize;
             let mut worst = (0.0_f64, 0.0_f64, 0.0_f64);
             for seed in SEEDS {
                 let mut rotor = Rotor::new(harmonic, 0.03, seed);
                 let least = rotor.least(harmonic) / cost(&rotor.z0);
-                let (ratios, end) = fly(&mut rotor, harmonic, &told(share), 200, |_, _, _| ());
+                let relaxed = controller_of(harmonic, q);
+                let (ratios, end) = fly(&mut rotor, relaxed, &told(share), 200, |_, _, _| ());
                 let excess = mean(&ratios[100..]) - least;
                 bad += usize::from(excess > 0.05 || peak(&ratios[20..]) > least + 0.15);
                 let noise = end.estimator().noise() / rotor.noise;
@@ -145,8 +155,10 @@ fn noise_leaves_the_loop_at_its_optimum() {
                     assert!((noise - 1.0).abs() < 0.25, "{harmonic} {seed}: {noise}");
                 }
             }
-            println!("{harmonic}/rev, told {share:?}: {bad} bad, worst mean and peak {worst:?}");
-            assert!(bad <= MOST_BAD, "{harmonic} {share:?}: {bad}");
+            println!(
+                "{harmonic}/rev, q {q}, told {share:?}: {bad} bad, worst mean and peak {worst:?}"
+            );
+            assert!(bad <= MOST_BAD, "{harmonic} {q} {share:?}: {bad}");
         }
     }
 }
@@ -158,7 +170,7 @@ fn noise_that_is_not_told_is_not_read_as_t() {
         let errors = |settings: &EstimatorSettings| -> (f64, f64) {
             let each = (0..10).map(|seed| {
                 let mut rotor = Rotor::new(3, noise, seed);
-                let (ratios, end) = fly(&mut rotor, 3, settings, 200, |_, _, _| ());
+                let (ratios, end) = fly(&mut rotor, controller(3), settings, 200, |_, _, _| ());
                 (t_error(end.estimator().t(), &rotor.t), mean(&ratios[100..]))
             });
             let (t, j): (Vec<f64>, Vec<f64>) = each.unzip();
@@ -176,12 +188,13 @@ fn noise_that_is_not_told_is_not_read_as_t() {
 /// change on T.
 #[test]
 fn a_jump_of_the_baseline_is_followed() {
-    for harmonic in [3, 4] {
+    for (harmonic, q) in [3, 4].into_iter().flat_map(|n| SURVIVALS.map(|q| (n, q))) {
         for share in [Some(0.03), None] {
             let late = |settings: &EstimatorSettings, seed| {
                 let mut rotor = Rotor::new(harmonic, 0.03, seed);
                 let before = cost(&rotor.z0);
-                let (ratios, _) = fly(&mut rotor, harmonic, settings, 160, |cycle, rotor, _| {
+                let relaxed = controller_of(harmonic, q);
+                let (ratios, _) = fly(&mut rotor, relaxed, settings, 160, |cycle, rotor, _| {
                     if cycle == 100 {
                         rotor.z0.iter_mut().for_each(|z| *z *= 1.3);
                     }
@@ -194,10 +207,10 @@ fn a_jump_of_the_baseline_is_followed() {
             };
             let (is, was) = (bad(&told(share)), bad(&as_it_was(share)));
             println!(
-                "{harmonic}/rev, told {share:?}: {was} -> {is} of {} above the optimum",
+                "{harmonic}/rev, q {q}, told {share:?}: {was} -> {is} of {} above the optimum",
                 SEEDS.count()
             );
-            assert!(is <= MOST_BAD && was > 80, "{harmonic} {share:?}: {was} {is}");
+            assert!(is <= MOST_BAD && was > 80, "{harmonic} {q} {share:?}: {was} {is}");
         }
     }
 }
@@ -207,13 +220,15 @@ fn a_jump_of_the_baseline_is_followed() {
 #[test]
 fn a_dead_flap_is_taken_up_by_the_other() {
     for (harmonic, flap) in [(3, 0), (3, 1), (4, 0), (4, 1)] {
-        for is_told in [true, false] {
+        for (is_told, q) in [true, false].into_iter().flat_map(|told| SURVIVALS.map(|q| (told, q)))
+        {
             let (mut bad, mut highest) = (0_usize, 0.0_f64);
             for seed in SEEDS {
                 let mut rotor = Rotor::new(harmonic, 0.03, seed);
                 let before = cost(&rotor.z0);
+                let relaxed = controller_of(harmonic, q);
                 let (ratios, end) =
-                    fly(&mut rotor, harmonic, &told(None), 160, |cycle, rotor, flying| {
+                    fly(&mut rotor, relaxed, &told(None), 160, |cycle, rotor, flying| {
                         if cycle == 100 {
                             let mut columns = rotor.t.columns();
                             columns[2 * flap..2 * flap + 2].iter_mut().for_each(|c| c.fill(0.0));
@@ -231,10 +246,12 @@ fn a_dead_flap_is_taken_up_by_the_other() {
                     assert!(dead[0].hypot(dead[1]) < 1e-3, "{dead:?}");
                 }
             }
-            println!("{harmonic}/rev, flap {flap}, told {is_told}: {bad} late, peak {highest:.3}");
+            println!(
+                "{harmonic}/rev, flap {flap}, told {is_told}, q {q}: {bad} late, peak {highest:.3}"
+            );
             assert!(
                 bad <= MOST_BAD && highest < 1.2,
-                "{harmonic} {flap} {is_told}: {bad} {highest}"
+                "{harmonic} {flap} {is_told} {q}: {bad} {highest}"
             );
         }
     }

@@ -384,7 +384,8 @@ impl Controlled {
             load_weights,
             effort_weight,
             rate_weight: study.values.rate_weight,
-            flap_survival: 0.01 * study.values.flap_survival_percent,
+            // what has failed is known; what is left is counted on
+            flap_survival: 1.0,
             gain: study.values.gain,
             amplitude_limit_volt: (0..layout.pairs()).map(limit).collect(),
             rate_limit_volt: study.values.rate_limit_volt,

@@ -35,6 +35,12 @@ pub fn flight_notes(case: &Case, values: &FlightValues, actuator: &str) -> Vec<S
         let left = if kept > 0.0 { format!(" with {kept} % of its motion") } else { String::new() };
         format!("Failure: flap {flap} of {on} stuck at {stuck_deg} deg{left} from {at_s} s on; the controller is {told}.")
     }));
+    if values.flap_survival_percent < 100.0 {
+        notes.push(format!(
+            "Flaps: the controllers count on {} % of each, so that one that fails shakes the hub less.",
+            values.flap_survival_percent
+        ));
+    }
     let (noise, seed) = (values.noise_percent, values.seed);
     let told = if values.noise_notice == Notice::Told { "told to" } else { "estimated by" };
     notes.push(format!(

@@ -69,7 +69,7 @@ section! {
         pub ramp_s: f64 = 20.0, Within(0.0, 3600.0), "s", "20 s is usual; 0 is a step";
         /// Advance ratios at which the rotor is trimmed and linearised, evenly from start to end. Loads are linear
         /// in between.
-        pub knots: usize = 11, Count(2, 100), "", "11 from 0.15 to 0.30 keep J within 2 % of J0";
+        pub knots: usize = 21, Count(2, 100), "", "21 from 0.15 to 0.30 keep J within 2 % of J0";
         /// A step of the thrust, such as `(at_s: 40, ratio: 1.1)`; left out, none.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub thrust_step: Option<ThrustStep> = None, Any, "", "";
@@ -105,7 +105,7 @@ section! {
         /// value of T is its scale, some 1e-12 to 1e-10.
         pub rate_weight: f64 = 0.0, Within(0.0, 1e6), "1/V^2", "0 leaves it out";
         /// Chance that a flap acts, which the control counts on: below 100 % flaps lean less on each other.
-        pub flap_survival_percent: f64 = 100.0, Within(1.0, 100.0), "%", "90 % where a flap that fails must not shake the hub";
+        pub flap_survival_percent: f64 = 90.0, Within(1.0, 100.0), "%", "90 % is usual; 100 % counts on flaps that never fail";
         /// Whether the adaptive controller is told `noise_percent`. `Untold`: it estimates the noise.
         pub noise_notice: Notice = Notice::Untold, Any, "", "";
         /// Change of Z0 that the adaptive controller expects from cycle to cycle, over the loads.

@@ -234,7 +234,7 @@ impl Flying {
     fn control_volt(&self) -> &[f64] {
         match self {
             Self::Fixed(relaxed, _) => relaxed.control_volt(),
-            Self::Adaptive(cycle) => cycle.controller().control_volt(),
+            Self::Adaptive(cycle) => cycle.control_volt(),
         }
     }
 
@@ -378,7 +378,7 @@ impl<'a> Flights<'a> {
     fn margins(&self) -> Result<MarginLine, ControlError> {
         let law = FeedbackLaw::new(&self.t0, &self.settings.load_weights)?;
         let layout = self.plant.layout();
-        let found = law.margins(layout, &self.own_t, self.settings.step(), &self.baseline)?;
+        let found = law.margins(layout, &self.own_t, self.settings.step(layout), &self.baseline)?;
         Ok(MarginLine {
             harmonic: self.set.harmonics.first().copied().unwrap_or_default(),
             condition: law.condition(),
