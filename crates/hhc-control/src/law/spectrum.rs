@@ -185,6 +185,8 @@ mod tests {
         let column: Vec<f64> = (0..6).map(|i| f64::from(i) - 2.0).collect();
         let t = TMatrix::from_columns(&[column.clone(), column]).unwrap();
         let law = FeedbackLaw::new(&t, &LoadWeights::Identity).unwrap();
+        // two columns of length sqrt(19) that are the same
+        assert!((law.singular_values()[0] - 38.0_f64.sqrt()).abs() < 1e-12);
         for (flap_survival, stronger) in [(0.9, 1.0), (0.9, 4.0), (0.5, 5.0)] {
             let step = RelaxedStep { flap_survival, ..RelaxedStep::of_gain(0.5) };
             let there = t.turned(stronger, 0.0).unwrap();

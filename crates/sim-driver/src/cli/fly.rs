@@ -16,7 +16,10 @@ pub(super) fn fly(args: &FlyArgs) -> Result<(), SimError> {
     let out = folder_or(args.out.as_ref(), &args.case);
     refuse_unwritable(&out)?;
     args.force.files(&out, FLIGHT_FILES)?;
-    args.force.files(&out, &BESIDE_FILES)?;
+    let asked = [args.failures, args.margins, args.draws.is_some()];
+    for (file, _) in BESIDE_FILES.iter().zip(asked).filter(|(_, is_asked)| *is_asked) {
+        args.force.files(&out, std::slice::from_ref(file))?;
+    }
     if let Some(draws) = args.draws {
         let mut problems = Problems::default();
         check_range(&mut problems, "--draws", draws as f64, [1.0, 1e5], "", "50 draws, say");

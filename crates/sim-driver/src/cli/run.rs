@@ -65,7 +65,8 @@ pub(super) fn report(
     let stored = StoredResult::read(dir)?;
     let figures = figures(&stored.result, &stored.setting()?);
     let report = StudyReport { stored: &stored, figures: &figures };
-    force.files(dir, RUN_FILES)?;
+    // result.json, the first, is read and not written
+    force.files(dir, &RUN_FILES[1..])?;
     write_shown(&report, dir)?;
     show(&report, dir, format)
 }

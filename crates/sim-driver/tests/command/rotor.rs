@@ -168,7 +168,7 @@ fn advance_ratios_go_on_where_they_were() {
     there(&again, 3, 3);
     assert_eq!(table(&more), table(&again));
     assert_eq!(place.read("s/sweep.csv").lines().count(), 4);
-    for broken in ["", "{}", &first.replacen("0.1", "0.2", 1)] {
+    for broken in ["", &first[..first.len() / 2], &first.replacen("0.1", "0.2", 1)] {
         place.write("s/mu_0.1/result.json", broken);
         there(&run("0.1,0.2"), 1, 2);
         assert_eq!(place.read("s/mu_0.1/result.json"), first);
