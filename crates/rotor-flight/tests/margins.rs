@@ -98,9 +98,9 @@ fn the_radius_knows_flaps_that_may_fail() {
         let values = FlightValues { flap_survival_percent, ..values(&[harmonic]) };
         let flying = FlyingCase::new(&case, &values, &ideal()).unwrap();
         let point = flying.margins().unwrap().sets.remove(0).points.remove(0);
-        (point.whole_step_radius[2], growth(&flying, harmonic, 0.15, 0.35), point)
+        (point.whole_step_radius[1], growth(&flying, harmonic, 0.15, 0.25), point)
     };
-    // at 2/rev the loop diverges there, so that what it flies is no rounding
+    // at 2/rev the loop diverges there, slowly: what it flies is neither rounding nor its limits
     for (survival_percent, other) in [(by_default, 100.0), (100.0, by_default)] {
         let (radius, flown, _) = of(2, survival_percent);
         let (of_other, ..) = of(2, other);

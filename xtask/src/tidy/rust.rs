@@ -52,8 +52,8 @@ fn long_example(file: &TextFile) -> Option<Finding> {
     let (_, inside) = file.path.strip_prefix("crates/")?.split_once('/')?;
     let name = inside.strip_prefix("examples/")?;
     let lines = file.text.lines().count();
-    let is_long = (name.ends_with(".rs") || name.ends_with(".py")) && lines >= EXAMPLE_LIMIT;
-    is_long.then(|| {
+    let is_program = [".rs", ".py"].iter().any(|ending| name.ends_with(ending));
+    (is_program && lines >= EXAMPLE_LIMIT).then(|| {
         let fault = format!(
             "has {lines} lines, an example less than {EXAMPLE_LIMIT}: cut it down to one task of its user"
         );
