@@ -8,11 +8,11 @@ use crate::identify::fit::refine::{Refined, SHAPE, reshaped};
 use crate::identify::fit::training::Training;
 use crate::identify::fit::{compare, static_fit};
 use crate::identify::records::prepared::Prepared;
-use crate::stages::{StageStep, Step};
 use crate::{
     Accommodation, ActuatorLaw, ActuatorModel, Calibration, LinkageStage, LogCreep, PlayMap,
     PreisachError, Relaxation, RelaxationElement, StaticPreisach,
 };
+use actuator_stages::{StageStep, Step};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
