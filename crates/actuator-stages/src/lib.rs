@@ -50,8 +50,8 @@ pub use sensor::{
     HumStep, MainsHum, Nonlinearity, NonlinearityShape, NonlinearityStep, Quantisation,
     QuantisationStep,
 };
-pub use stage::{AmplifierStage, LinkageStage, SensorStage};
-pub use step::{Curve, StageMemory, StageStep, Step};
+pub use stage::{AmplifierStage, LinkageStage, SensorStage, StageMemory, StageStep};
+pub use step::{Curve, Step};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

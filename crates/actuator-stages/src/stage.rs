@@ -1,14 +1,17 @@
-//! The stages of an actuator file: one enum each for amplifier, linkage and sensor.
+//! Any stage: as an actuator file holds it, one enum each for amplifier, linkage and sensor, and made ready for one time
+//! step.
 
-use crate::amplifier::CurrentStep;
+use crate::amplifier::{CurrentStep, DepolarisationStep, HeatStep};
 use crate::check::{check_not_negative, check_positive};
+use crate::creep::CreepStep;
 use crate::delay::DelayStep;
-use crate::linkage::{AccommodationStep, PlayStep};
-use crate::sensor::QuantisationStep;
+use crate::linkage::{AccommodationStep, LoadStep, PlayStep};
+use crate::resonance::ResonanceStep;
+use crate::sensor::{HumStep, NonlinearityStep, QuantisationStep};
 use crate::{
     Accommodation, Backlash, Calibration, CoulombFriction, CurrentLimit, Delay, Depolarisation,
     DielectricHeating, FrictionStep, KelvinVoigt, Lag, LoadStiffness, LogCreep, MainsHum,
-    Nonlinearity, Quantisation, Relaxation, Resonance, Saturation, StageError, StageStep,
+    Nonlinearity, Quantisation, Relaxation, Resonance, Saturation, StageError, Step,
 };
 use serde::{Deserialize, Serialize};
 
@@ -66,6 +69,93 @@ pub enum SensorStage {
     Delay(Delay),
     /// A line at mains frequency.
     MainsHum(MainsHum),
+}
+
+/// The kinds of stages: from a list of names and steps the enum of any step, the enum of any memory,
+/// and [`Step`] of the one with the other.
+macro_rules! kinds {
+    ($($kind:ident($step:ty)),* $(,)?) => {
+        /// Any stage made ready for one time step.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum StageStep {
+            $(#[doc = concat!("[`", stringify!($step), "`].")] $kind($step)),*
+        }
+
+        /// What any stage remembers.
+        #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+        pub enum StageMemory {
+            $(#[doc = concat!("What [`", stringify!($step), "`] remembers.")] $kind(<$step as Step>::Memory)),*
+        }
+
+        impl Step for StageStep {
+            type Memory = StageMemory;
+
+            fn start(&self, input: f64) -> (StageMemory, f64) {
+                match self {
+                    $(Self::$kind(step) => {
+                        let (memory, output) = step.start(input);
+                        (StageMemory::$kind(memory), output)
+                    })*
+                }
+            }
+
+            /// NaN for a memory of another kind of stage, see [`Step::owns`].
+            #[inline]
+            fn advance(&self, memory: &mut StageMemory, input: f64) -> f64 {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.advance(m, input),)*
+                    _ => f64::NAN,
+                }
+            }
+
+            fn pass(&self, signal: &mut [f64]) {
+                match self {
+                    $(Self::$kind(step) => step.pass(signal),)*
+                }
+            }
+
+            fn owns(&self, memory: &StageMemory) -> bool {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.owns(m),)*
+                    _ => false,
+                }
+            }
+
+            #[inline]
+            fn gain(&self, memory: &StageMemory) -> f64 {
+                match (self, memory) {
+                    $((Self::$kind(step), StageMemory::$kind(m)) => step.gain(m),)*
+                    _ => f64::NAN,
+                }
+            }
+
+            fn settle(&self, before: &StageMemory, now: &mut StageMemory, period_s: f64) {
+                match (self, before, now) {
+                    $((Self::$kind(step), StageMemory::$kind(b), StageMemory::$kind(n)) => {
+                        step.settle(b, n, period_s);
+                    })*
+                    _ => {}
+                }
+            }
+        }
+    };
+}
+
+kinds! {
+    CurrentLimit(CurrentStep),
+    Saturation(Saturation),
+    Delay(DelayStep),
+    Heating(HeatStep),
+    Depolarisation(DepolarisationStep),
+    Creep(CreepStep),
+    Resonance(ResonanceStep),
+    Play(PlayStep),
+    Friction(FrictionStep),
+    Accommodation(AccommodationStep),
+    Load(LoadStep),
+    Nonlinearity(NonlinearityStep),
+    Quantisation(QuantisationStep),
+    Hum(HumStep),
 }
 
 impl AmplifierStage {

@@ -65,13 +65,13 @@ pub(crate) const BENCHES: [Bench; 8] = [
 
 /// Benches of one record each: nothing but blocks in time to choose a model by.
 pub(crate) const ONE_RECORD: [Bench; 7] = [
-    bench("fade, plays", Kind::Plays, Runs::OneFade, 12, TIE),
-    bench("fade, relays", Kind::Relays, Runs::OneFade, 6, TIE),
-    bench("fade, creep", Kind::Creep, Runs::OneFade, 6, TIE),
-    bench("fade, Bouc-Wen", Kind::BoucWen, Runs::OneFade, 6, TIE),
-    bench("steps and sine, plays", Kind::Plays, Runs::OneOfStepsAndSine, 12, TIE),
-    bench("steps and sine, relays", Kind::Relays, Runs::OneOfStepsAndSine, 6, TIE),
-    bench("steps and sine, creep", Kind::Creep, Runs::OneOfStepsAndSine, 6, TIE),
+    bench("fade, plays", Kind::Plays, Runs::OneFade, 4, TIE),
+    bench("fade, relays", Kind::Relays, Runs::OneFade, 3, TIE),
+    bench("fade, creep", Kind::Creep, Runs::OneFade, 3, TIE),
+    bench("fade, Bouc-Wen", Kind::BoucWen, Runs::OneFade, 3, TIE),
+    bench("steps and sine, plays", Kind::Plays, Runs::OneOfStepsAndSine, 4, TIE),
+    bench("steps and sine, relays", Kind::Relays, Runs::OneOfStepsAndSine, 3, TIE),
+    bench("steps and sine, creep", Kind::Creep, Runs::OneOfStepsAndSine, 3, TIE),
 ];
 
 const fn bench(

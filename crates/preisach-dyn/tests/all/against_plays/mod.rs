@@ -1,5 +1,6 @@
 //! Identification without options against fifteen lines of non-negative least squares of plays.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+#![expect(clippy::print_stdout, reason = "a test says its figures")]
 
 mod benches;
 
