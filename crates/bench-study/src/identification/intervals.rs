@@ -17,7 +17,8 @@ const PARTS: usize = 16;
 const LEAST_BLOCK: usize = 8;
 
 /// Families whose intervals held the truth in 17 of 20 benches at least, every quantity of them. The others, a static map
-/// fitted in rounds with stages behind it or a law before creep, held as few as 10: they get none.
+/// fitted in rounds with stages behind it or a law before creep, held as few as 10, and those of the deviations of their own
+/// searches as few as 3: they get none.
 pub const CONFIRMED: [Family; 10] = [
     Family::Linear,
     Family::LinearLag,

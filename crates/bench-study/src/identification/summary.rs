@@ -39,6 +39,7 @@ impl BenchIdentification {
             physical: physical(
                 &self.pick.parameters,
                 &self.known_quantities(),
+                self.pick.family,
                 &self.model,
                 subject.units(),
             ),
@@ -209,7 +210,7 @@ pub struct IdentifyResult {
     /// Parameters found by output error, as the fit holds them; a deviation is null in JSON if the
     /// records do not determine the parameter.
     pub parameters: Vec<Estimate>,
-    /// What the model says in physical terms, with 95 % intervals.
+    /// What the model says in physical terms, with 95 % intervals where they are confirmed for its family.
     pub physical: Vec<PhysicalParameter>,
     /// The model itself, as the actuator file holds it.
     pub actuator: ActuatorModel,

@@ -172,6 +172,10 @@ const NORMAL_95: f64 = 1.96;
 /// The parameters with their intervals.
 fn parameters(result: &IdentifyResult) -> Markup {
     use report_page::pictures::{Interval, intervals};
+    if result.physical.is_empty() {
+        let text = "Models were not compared: parameters are told of a model chosen among others.";
+        return titled("parameters", PARAMETERS, text, &[]);
+    }
     let all: Vec<Interval> = result
         .physical
         .iter()
@@ -185,6 +189,11 @@ fn parameters(result: &IdentifyResult) -> Markup {
             })
         })
         .collect();
+    let values = result.parameters_found().table();
+    if all.is_empty() {
+        let text = "Values of the model; beside each stands why it has no interval.";
+        return titled("parameters", PARAMETERS, text, &[values]);
+    }
     let text = "Value and 95 % interval, each on its own axis. Grey: usual values say more of it than the runs, or it is at its bound. One that the runs do not determine is in the table alone.";
-    titled("parameters", PARAMETERS, text, &[intervals(&all), result.parameters_found().table()])
+    titled("parameters", PARAMETERS, text, &[intervals(&all), values])
 }
