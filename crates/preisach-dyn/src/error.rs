@@ -1,6 +1,6 @@
 //! The errors of this crate.
 
-use crate::VoltageRange;
+use crate::{StageError, VoltageRange};
 use std::borrow::Cow;
 
 /// What can go wrong with an actuator model, its simulation or its identification.
@@ -30,6 +30,9 @@ pub enum PreisachError {
         /// The parameter, its value and what it may be.
         source: Box<PreisachError>,
     },
+    /// A parameter of a stage alone, without its place in an actuator.
+    #[error(transparent)]
+    StageParameter(#[from] StageError),
     /// A number is NaN or infinite.
     #[error("{quantity} at index {index} is {value}, expected a finite number")]
     NotFinite {

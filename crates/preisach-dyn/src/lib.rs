@@ -11,7 +11,7 @@
 //! | dynamic model, paper eq. (5) | [`DynamicPreisach`], [`output_rate`] |
 //! | other families | [`PrandtlIshlinskii`], [`BoucWen`]; output ahead of the input: [`PrandtlStop`] |
 //! | hysteresis inside a resonance | [`HystereticOscillator`] |
-//! | what stands around the law | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
+//! | what stands around the law, of `actuator-stages` | [`AmplifierStage`], [`LinkageStage`], [`SensorStage`] |
 //! | one actuator: simulation, bench, batch | [`ActuatorModel`], [`Drive`], [`Stepper`] |
 //! | closed orbits, and the voltage for a wanted one | [`PeriodicResponse`], [`PeriodicInverse`] |
 //! | reversal curves: density | [`forc`] |
@@ -23,20 +23,23 @@
 //! Transactions on Magnetics 24 (1988).
 
 mod actuator;
-mod calibration;
 mod check;
 mod error;
 pub mod forc;
 pub mod identify;
 mod inverse;
 mod laws;
-mod stages;
 
 pub use actuator::chain::{ActuatorMemory, Stepper};
 pub use actuator::model::{ActuatorModel, TrainedRange};
 pub use actuator::periodic::{PeriodicResponse, PeriodicSettings};
 pub use actuator::simulate::{BenchSimulation, Drive, Simulation};
-pub use calibration::Calibration;
+pub use actuator_stages::{
+    Accommodation, AmplifierStage, Backlash, Calibration, CoulombFriction, CurrentLimit, Delay,
+    Depolarisation, DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage,
+    LoadStiffness, LogCreep, MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation,
+    RelaxationElement, Resonance, Saturation, SensorStage, StageError,
+};
 pub use error::PreisachError;
 pub use inverse::{InverseSettings, PeriodicInverse};
 pub use laws::bouc_wen::{BoucWen, BoucWenMemory, BoucWenParameters};
@@ -54,12 +57,6 @@ pub use laws::play_map::PlayMap;
 pub use laws::prandtl::{PrandtlIshlinskii, PrandtlParameters, WeightedPlay};
 pub use laws::statics::StaticPreisach;
 pub use laws::stop::{PrandtlStop, StopParameters, WeightedStop};
-pub use stages::{
-    Accommodation, AmplifierStage, Backlash, CoulombFriction, CurrentLimit, Delay, Depolarisation,
-    DielectricHeating, KelvinVoigt, KelvinVoigtElement, Lag, LinkageStage, LoadStiffness, LogCreep,
-    MainsHum, Nonlinearity, NonlinearityShape, Quantisation, Relaxation, RelaxationElement,
-    Resonance, Saturation, SensorStage,
-};
 
 /// Compiles and runs the example of the README.
 #[cfg(doctest)]

@@ -1,10 +1,11 @@
 //! Which of the fitted models is used.
 
+use super::intervals::{KnownQuantity, known_quantities};
 use super::{BenchIdentification, dataset_place};
 use crate::BenchError;
 use actuator_gap::judged;
 use measured_data::problem::{Fault, Problem};
-use preisach_dyn::identify::{Estimate, Family, ModelRow, Order, Settings};
+use preisach_dyn::identify::{Estimate, Family, LeftOut, ModelRow, Order, Settings};
 use serde::Serialize;
 
 /// The family of models that `hhc identify` writes; none leaves it to cross-validation.
@@ -18,6 +19,8 @@ pub enum PickReason {
     OnlyFit,
     /// Cross-validation over the training runs chose it.
     CrossValidation,
+    /// Blocks in time of the only training run, left out of the fit in turn, chose it.
+    BlocksInTime,
     /// Too few training runs to leave one out: there is nothing to choose by.
     NothingToChooseBy,
     /// It was asked for.
@@ -35,6 +38,8 @@ pub struct Pick {
     pub reason: PickReason,
     /// Its parameters found by output error, as the fit holds them, with their standard deviations.
     pub parameters: Vec<Estimate>,
+    /// Its row in the comparison; none if there was none.
+    row: Option<ModelRow>,
 }
 
 impl Pick {
@@ -42,11 +47,19 @@ impl Pick {
     pub(super) fn first_fit(settings: &Settings) -> Self {
         let family = Family::DynamicPreisach;
         let (order, parameters) = (Order::of(settings), vec![]);
-        Self { family, order, reason: PickReason::OnlyFit, parameters }
+        Self { family, order, reason: PickReason::OnlyFit, parameters, row: None }
     }
 }
 
 impl BenchIdentification {
+    /// The physical quantities of the model picked from a comparison, with intervals; empty without one.
+    pub(super) fn known_quantities(&self) -> Vec<KnownQuantity> {
+        let both = self.comparison.as_ref().zip(self.pick.row.as_ref());
+        both.map_or_else(Vec::new, |(table, row)| {
+            known_quantities(table, row, &self.records, &self.settings)
+        })
+    }
+
     /// Takes a model of the comparison in the place of the dynamic Preisach model and judges it.
     /// Nothing happens without a [`comparison`](Self::comparison).
     ///
@@ -60,6 +73,7 @@ impl BenchIdentification {
             None => table.best(),
         };
         let place = || dataset_place(&self.heading.folder);
+        let row = chosen.cloned();
         let Some(ModelRow { family, order, cross_validation, fitted, .. }) = chosen else {
             let Some(family) = choice else { return Ok(()) };
             let message = format!(
@@ -84,12 +98,13 @@ impl BenchIdentification {
             }
         };
         let reason = match (choice, cross_validation) {
+            (None, Some(_)) if table.left_out == LeftOut::Blocks => PickReason::BlocksInTime,
             (None, Some(_)) => PickReason::CrossValidation,
             (None, None) => PickReason::NothingToChooseBy,
             _ => PickReason::AskedFor,
         };
         let parameters = fitted.parameters.clone();
-        self.pick = Pick { family: *family, order: *order, reason, parameters };
+        self.pick = Pick { family: *family, order: *order, reason, parameters, row };
         self.model = fitted.model.clone();
         let fits = judged(&self.records, &self.identification, &self.model);
         self.fits = fits.map_err(|e| self.heading.misjudged(e))?;

@@ -1,10 +1,12 @@
 //! `hhc identify`: bench data in, actuator model out.
 
 mod choice;
+mod intervals;
 mod physical;
 mod summary;
 
 pub use choice::{ModelChoice, Pick, PickReason};
+pub use intervals::{CONFIRMED, KnownQuantity, known_quantities};
 pub use physical::PhysicalParameter;
 pub use summary::fit_table;
 pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
@@ -18,10 +20,12 @@ use measured_data::problem::{Fault, Place, Problem};
 use measured_data::{BenchData, Channel, DATASET, LoopData, Run, RunRole, limits};
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, Finding, FlapZero, Identification, MOST_UNEXPLAINED,
-    ModelComparison, RecordUse, RecordWindows, Settings, Subject, compare_models, identify,
+    ModelComparison, RecordUse, RecordWindows, RestNoise, Settings, Subject, compare_models,
+    identify,
 };
 use preisach_dyn::{ActuatorModel, PreisachError, VoltageRange};
 use rayon::prelude::*;
+use rotor_base::mean_square;
 
 /// Half peak to peak of the slowest full-scale loop where the data set gives no gain, deg.
 ///
@@ -254,9 +258,12 @@ fn identified(
             *record = from_zero;
         }
     }
+    let noises: Vec<f64> = rests.iter().map(|r| RestNoise::of_record(r).rms_deg()).collect();
+    let rest_noise_deg = (!noises.is_empty()).then(|| mean_square(&noises).sqrt());
     let table = || {
         let compare = |Comparing { families, done }: Comparing<'_>| {
-            let candidates = Candidates { families: families.to_vec(), ..Candidates::default() };
+            let candidates =
+                Candidates { families: families.to_vec(), rest_noise_deg, ..Candidates::default() };
             compare_models(&records, &settings, &candidates, done)
         };
         compared.map(compare).transpose()
@@ -433,5 +440,31 @@ mod tests {
         let message = found.pick(Some(Family::BoucWenMode)).unwrap_err().to_string();
         assert!(message.contains("Bouc-Wen + mode was left out"), "{message}");
         assert!(message.contains("--only"), "{message}");
+    }
+
+    /// A run at rest tells the noise that models are compared after.
+    #[test]
+    fn a_rest_is_taken_into_the_comparison() {
+        let line = LinearGain { gain_deg_per_volt: 0.1, bias_volt: 65.0 };
+        let mut data = bench(ActuatorLaw::Linear(line));
+        let sawtooth = |i: usize| if i.is_multiple_of(2) { 0.05 } else { -0.05 };
+        for run in &mut data.runs {
+            run.table.output.iter_mut().enumerate().for_each(|(i, y)| *y += sawtooth(i));
+        }
+        let mut rest = data.runs[0].clone();
+        rest.table.input.fill(65.0);
+        let count = rest.table.output.len();
+        rest.table.output = (0..count).map(sawtooth).collect();
+        data.runs.truncate(1);
+        // one cycle alone does not repeat
+        data.runs[0].table.input.truncate(520);
+        data.runs[0].table.output.truncate(520);
+        data.runs[0].table.time_s.truncate(520);
+        data.runs.push(rest);
+        let only = Some(Comparing { families: &[Family::Linear], done: &|| () });
+        let found = identify_bench(&data, &Settings::default(), only).unwrap();
+        let row = &found.comparison.as_ref().unwrap().rows[0];
+        let spread = rotor_base::variance(&data.runs[0].table.output).sqrt();
+        assert!((row.noise * spread / 0.05 - 1.0).abs() < 1e-3, "{}", row.noise * spread);
     }
 }

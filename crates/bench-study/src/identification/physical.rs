@@ -1,6 +1,7 @@
 //! Parameters in physical terms: what a search calls `ln gain` as a gain with its 95 % interval.
 
-use preisach_dyn::identify::Estimate;
+use super::{CONFIRMED, KnownQuantity};
+use preisach_dyn::identify::{Estimate, Family, QuantityUnit};
 use preisach_dyn::{ActuatorLaw, ActuatorModel};
 use serde::Serialize;
 
@@ -13,7 +14,7 @@ pub struct PhysicalParameter {
     pub unit: String,
     /// Its value.
     pub value: f64,
-    /// Ends of its 95 % interval; none if the records do not determine it.
+    /// Ends of its 95 % interval; none if the records do not determine it, or the family of the model is not [`CONFIRMED`].
     pub interval: Option<[f64; 2]>,
     /// What else is to be known of the interval: where it comes from, that it reaches a bound.
     pub remark: Option<&'static str>,
@@ -23,6 +24,9 @@ pub struct PhysicalParameter {
 const HALF: f64 = 1.96;
 /// Part of an interval that ends next to a bound.
 const NEAR: f64 = 1e-3;
+
+const TIED: &str = "tied to its usual value";
+const AT_BOUND: &str = "at its bound";
 
 /// Unit of a parameter, in terms of those of input and output.
 #[derive(Clone, Copy)]
@@ -126,60 +130,109 @@ fn reading(name: &str) -> Option<Reading> {
     })
 }
 
-/// Parameters in physical terms; those of a shape without a name of its own stay as the fit holds them.
+/// What a model says in physical terms: the parameters of its search that have a meaning, and its quantities. Where both have
+/// a name, the wider interval stands. Numbers of a shape are left out. A family that is not [`CONFIRMED`] gets no interval, of
+/// neither kind.
 pub(super) fn physical(
     estimates: &[Estimate],
+    known: &[KnownQuantity],
+    family: Family,
+    model: &ActuatorModel,
+    units: [&str; 2],
+) -> Vec<PhysicalParameter> {
+    let read = estimates.iter().filter_map(|own| read(own, model, units));
+    let mut all: Vec<PhysicalParameter> = read.collect();
+    for own in known.iter().map(|own| told(own, units)) {
+        match all.iter_mut().find(|there| there.name == own.name) {
+            Some(there) => {
+                // what the records do not determine stays so
+                if let (Some(new), Some(old)) = (own.interval, &mut there.interval)
+                    && new[1] - new[0] > old[1] - old[0]
+                {
+                    *old = new;
+                }
+            }
+            None => all.push(own),
+        }
+    }
+    if !CONFIRMED.contains(&family) {
+        for own in &mut all {
+            own.interval = None;
+            own.remark = Some(match own.remark {
+                Some(TIED) => "tied to its usual value; no interval is confirmed for this model",
+                Some(AT_BOUND) => "at its bound; no interval is confirmed for this model",
+                _ => "no interval is confirmed for this model",
+            });
+        }
+    }
+    all
+}
+
+/// A quantity as a parameter.
+fn told(known: &KnownQuantity, [input, output]: [&str; 2]) -> PhysicalParameter {
+    let KnownQuantity { quantity, interval } = known;
+    // what cannot be negative is not negative
+    let is_positive = !matches!(quantity.unit, QuantityUnit::Output | QuantityUnit::Percent);
+    PhysicalParameter {
+        name: quantity.name.to_owned(),
+        unit: match quantity.unit {
+            QuantityUnit::Output => output.to_owned(),
+            QuantityUnit::OutputRate => format!("{output} s/{input}"),
+            QuantityUnit::Seconds => "s".to_owned(),
+            QuantityUnit::Hertz => "Hz".to_owned(),
+            QuantityUnit::Percent => "%".to_owned(),
+            QuantityUnit::PercentPerDecade => "%/decade".to_owned(),
+            QuantityUnit::Plain => String::new(),
+        },
+        value: quantity.value,
+        interval: interval.map(|[low, high]| [if is_positive { low.max(0.0) } else { low }, high]),
+        remark: interval.is_none().then_some("no interval: a fit to drawn residuals failed"),
+    }
+}
+
+/// A parameter of a search in physical terms; none of a shape.
+fn read(
+    estimate: &Estimate,
     model: &ActuatorModel,
     [input, output]: [&str; 2],
-) -> Vec<PhysicalParameter> {
-    let one = |estimate: &Estimate| {
-        let Estimate { value, std_deviation, .. } = *estimate;
-        let half = HALF * std_deviation;
-        let tied = estimate.is_tied().then_some("tied to its usual value");
-        let Some(Reading { name, unit, of, at, bounds }) = reading(&estimate.name) else {
-            return PhysicalParameter {
-                name: estimate.name.clone(),
-                unit: String::new(),
-                value,
-                interval: half.is_finite().then_some([value - half, value + half]),
-                remark: tied,
-            };
-        };
-        let here = of(value);
-        let factor = at(model).filter(|_| here != 0.0).map_or(1.0, |own| own / here);
-        // a square is not negative on either side of zero
-        let ends = [of(value - half), of(value + half)];
-        let is_square = estimate.name.starts_with("root");
-        let low = if is_square && half > value.abs() { 0.0 } else { f64::min(ends[0], ends[1]) };
-        let high = f64::max(ends[0], ends[1]);
-        let is_near = |bound: f64| {
-            bound.is_finite()
-                && (here - bound).abs() <= NEAR * (bounds[1] - bounds[0]).abs().min(1.0)
-        };
-        let at_bound = bounds.into_iter().any(is_near).then_some("at its bound");
-        let scaled = [factor * low, factor * high];
-        PhysicalParameter {
-            name: name.to_owned(),
-            unit: match unit {
-                Of::Input => input.to_owned(),
-                Of::Output => output.to_owned(),
-                Of::Gain => format!("{output}/{input}"),
-                Of::Word(word) => word.to_owned(),
-            },
-            value: factor * here,
-            interval: half
-                .is_finite()
-                .then_some([f64::min(scaled[0], scaled[1]), f64::max(scaled[0], scaled[1])]),
-            remark: at_bound.or(tied),
-        }
+) -> Option<PhysicalParameter> {
+    let Estimate { value, std_deviation, .. } = *estimate;
+    let half = HALF * std_deviation;
+    let tied = estimate.is_tied().then_some(TIED);
+    let Reading { name, unit, of, at, bounds } = reading(&estimate.name)?;
+    let here = of(value);
+    let factor = at(model).filter(|_| here != 0.0).map_or(1.0, |own| own / here);
+    // a square is not negative on either side of zero
+    let ends = [of(value - half), of(value + half)];
+    let is_square = estimate.name.starts_with("root");
+    let low = if is_square && half > value.abs() { 0.0 } else { f64::min(ends[0], ends[1]) };
+    let high = f64::max(ends[0], ends[1]);
+    let is_near = |bound: f64| {
+        bound.is_finite() && (here - bound).abs() <= NEAR * (bounds[1] - bounds[0]).abs().min(1.0)
     };
-    estimates.iter().map(one).collect()
+    let at_bound = bounds.into_iter().any(is_near).then_some(AT_BOUND);
+    let scaled = [factor * low, factor * high];
+    Some(PhysicalParameter {
+        name: name.to_owned(),
+        unit: match unit {
+            Of::Input => input.to_owned(),
+            Of::Output => output.to_owned(),
+            Of::Gain => format!("{output}/{input}"),
+            Of::Word(word) => word.to_owned(),
+        },
+        value: factor * here,
+        interval: half
+            .is_finite()
+            .then_some([f64::min(scaled[0], scaled[1]), f64::max(scaled[0], scaled[1])]),
+        remark: at_bound.or(tied),
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use preisach_dyn::VoltageRange;
+    use preisach_dyn::identify::Quantity;
 
     fn estimate(name: &str, value: f64, std_deviation: f64) -> Estimate {
         Estimate { name: name.into(), value, std_deviation, usual_share: 0.0 }
@@ -195,7 +248,14 @@ mod tests {
             estimate("creep per decade, logit", -20.0, 0.5),
             estimate("ln mu0 per centre", 0.3, 0.1),
         ];
-        let found = physical(&estimates, &model, ["V", "deg"]);
+        let quantity = |name, unit, value| Quantity { name, unit, value };
+        let lag = quantity("time constant of the lag", QuantityUnit::Seconds, 0.01);
+        let stroke = quantity("stroke", QuantityUnit::Output, -20.0);
+        let known = [
+            KnownQuantity { quantity: lag, interval: Some([-0.01, 0.03]) },
+            KnownQuantity { quantity: stroke, interval: Some([-21.0, -19.0]) },
+        ];
+        let found = physical(&estimates, &[], Family::LinearLag, &model, ["V", "deg"]);
         let own = gain(&model).unwrap();
         assert_eq!((found[0].value, found[0].unit.as_str()), (own, "deg/V"));
         let [low, high] = found[0].interval.unwrap();
@@ -205,6 +265,38 @@ mod tests {
         assert!((low - 0.01 * (-0.196_f64).exp()).abs() < 1e-12 && high > 0.012, "{low} {high}");
         assert_eq!((found[2].value, found[2].interval), (20.0, None));
         assert_eq!(found[3].remark, Some("at its bound"));
-        assert_eq!((found[4].name.as_str(), found[4].value), ("ln mu0 per centre", 0.3));
+        // a shape has no physical value; of two intervals the wider one stands
+        assert_eq!(found.len(), 4);
+        let found = physical(&estimates, &known, Family::LinearLag, &model, ["V", "deg"]);
+        assert_eq!(found[1].interval, Some([0.0, 0.03]));
+        assert_eq!((found[4].name.as_str(), found[4].unit.as_str()), ("stroke", "deg"));
+        assert_eq!(found[4].interval, Some([-21.0, -19.0]));
+    }
+
+    #[test]
+    fn a_family_without_confirmed_intervals_gets_none_and_says_so() {
+        let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
+        let estimates = [
+            estimate("ln natural frequency, Hz", 30.0_f64.ln(), 0.001),
+            Estimate { usual_share: 0.9, ..estimate("share at once, logit", -1.0, 0.1) },
+            estimate("creep per decade, logit", -20.0, 0.5),
+        ];
+        let quantity = Quantity { name: "stroke", unit: QuantityUnit::Output, value: 20.0 };
+        let known = [KnownQuantity { quantity, interval: Some([19.0, 21.0]) }];
+        let of = |family| physical(&estimates, &known, family, &model, ["V", "deg"]);
+        assert!(of(Family::StaticPreisach).iter().all(|own| own.interval.is_some()));
+        let found = of(Family::StaticPreisachMode);
+        assert_eq!(found.len(), 4);
+        assert!((found[0].value - 30.0).abs() < 1e-12);
+        let begins = [
+            "no interval",
+            "tied to its usual value; no interval",
+            "at its bound; no interval",
+            "no interval",
+        ];
+        for (own, begin) in found.iter().zip(begins) {
+            assert_eq!(own.interval, None, "{own:?}");
+            assert!(own.remark.unwrap().starts_with(begin), "{own:?}");
+        }
     }
 }

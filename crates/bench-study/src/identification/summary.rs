@@ -6,7 +6,7 @@ use crate::stored::{GainRule, StoredChannels, StoredFit};
 use measured_data::significant;
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{
-    Channel, DensitySpread, Estimate, Family, Finding, MOST_UNEXPLAINED, ModelComparison,
+    Channel, DensitySpread, Estimate, Family, Finding, LeftOut, MOST_UNEXPLAINED, ModelComparison,
     NoiseSource, RecordUse, Refinement, Settings, Severity, Subject,
 };
 use report_page::{Section, Sheet, counted, table};
@@ -36,10 +36,17 @@ impl BenchIdentification {
             picked_by: self.pick.reason,
             refinement: refined.then_some(self.identification.refinement),
             parameters: self.pick.parameters.clone(),
-            physical: physical(&self.pick.parameters, &self.model, subject.units()),
+            physical: physical(
+                &self.pick.parameters,
+                &self.known_quantities(),
+                self.pick.family,
+                &self.model,
+                subject.units(),
+            ),
             actuator: self.model.clone(),
             runs: self.fits.clone(),
             models: self.comparison.as_ref().map_or_else(Vec::new, |t| model_lines(t, subject)),
+            left_out: self.comparison.as_ref().map_or(LeftOut::Nothing, |t| t.left_out),
             findings: self.findings(),
             density_determined: found.density_determined,
             density_spread: self.identification.density_spread.as_ref().map(DensityLine::of),
@@ -125,7 +132,8 @@ pub struct ModelLine {
     pub levels: usize,
     /// Whether cross-validation chose it.
     pub chosen: bool,
-    /// RMS of the NRMSE of training runs left out of the fit, percent; none if none could be left out.
+    /// RMS of the NRMSE of training runs, or of blocks of the only one, left out of the fit, percent; none if nothing could be
+    /// left out.
     pub cross_validation_percent: Option<f64>,
     /// RMS of the NRMSE of the training runs, percent.
     pub trained_percent: Option<f64>,
@@ -202,7 +210,7 @@ pub struct IdentifyResult {
     /// Parameters found by output error, as the fit holds them; a deviation is null in JSON if the
     /// records do not determine the parameter.
     pub parameters: Vec<Estimate>,
-    /// The same in physical terms, with 95 % intervals.
+    /// What the model says in physical terms, with 95 % intervals where they are confirmed for its family.
     pub physical: Vec<PhysicalParameter>,
     /// The model itself, as the actuator file holds it.
     pub actuator: ActuatorModel,
@@ -210,6 +218,8 @@ pub struct IdentifyResult {
     pub runs: Vec<StoredFit>,
     /// All families of models on the same split; empty if they were not compared.
     pub models: Vec<ModelLine>,
+    /// What was left out of the fits in turn to choose among them.
+    pub left_out: LeftOut,
     /// What the data cannot tell.
     pub findings: Vec<FindingLine>,
     /// Numbers of the static density that the training runs determine, of how many.
@@ -341,8 +351,8 @@ impl IdentifyResult {
                 100.0 * refinement.nrmse_after
             ));
         }
-        if !self.parameters.is_empty() {
-            sheet.line(format_args!("\nParameters found by output error"));
+        if !self.physical.is_empty() {
+            sheet.line(format_args!("\nPhysical parameters"));
             sheet.block(&as_text(&self.parameters_found()));
         }
         for (title, use_as) in
@@ -434,14 +444,18 @@ impl IdentifyResult {
 
     /// How the choice among the models was made.
     pub(crate) fn how_chosen(&self) -> String {
-        format!(
-            "{} Held-out runs take no part in the choice.",
-            if self.models.iter().any(|m| m.cross_validation_percent.is_some()) {
-                "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %."
-            } else {
+        let way = match self.left_out {
+            LeftOut::Records => {
+                "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %, the noise taken off."
+            }
+            LeftOut::Blocks => {
+                "Left out: blocks in time of the one training run, each run through and scored on the block; by this\ncolumn the model marked * is chosen, a simpler one if it is within 3 %, the noise taken off."
+            }
+            LeftOut::Nothing => {
                 "Left out: too few training runs to leave one out. The model marked * is the usual one for such\nruns; nothing in the data chooses it."
             }
-        )
+        };
+        format!("{way} Held-out runs take no part in the choice.")
     }
 
     /// Why families have no fit, each reason once.
@@ -449,7 +463,7 @@ impl IdentifyResult {
         failures(&self.models)
     }
 
-    /// The parameters found by output error.
+    /// The physical parameters.
     pub(crate) fn parameters_found(&self) -> Section {
         parameter_table(&self.physical)
     }
@@ -459,6 +473,7 @@ impl IdentifyResult {
         match self.picked_by {
             PickReason::OnlyFit => "the only one fitted",
             PickReason::CrossValidation => "chosen by cross-validation",
+            PickReason::BlocksInTime => "chosen by blocks in time of the one training run",
             PickReason::NothingToChooseBy => {
                 "the usual one: too few training runs to choose a model by"
             }
@@ -484,7 +499,8 @@ fn parameter_table(parameters: &[PhysicalParameter]) -> Section {
         &["parameter", "value", "95 % interval", ""],
         parameters.iter().map(|own| {
             let value = format!("{} {}", significant(own.value, 4), own.unit);
-            let interval = own.interval.map_or("not determined".to_owned(), |[low, high]| {
+            let none = if own.remark.is_some() { "-" } else { "not determined" };
+            let interval = own.interval.map_or(none.to_owned(), |[low, high]| {
                 format!("{} to {}", significant(low, 4), significant(high, 4))
             });
             let remark = own.remark.unwrap_or_default().to_owned();

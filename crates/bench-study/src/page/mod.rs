@@ -172,23 +172,28 @@ const NORMAL_95: f64 = 1.96;
 /// The parameters with their intervals.
 fn parameters(result: &IdentifyResult) -> Markup {
     use report_page::pictures::{Interval, intervals};
-    if result.parameters.is_empty() {
-        let text = "No parameter of this model is found by output error. Record runs at three frequencies or more: a model with lag, creep or relaxation then has some.";
+    if result.physical.is_empty() {
+        let text = "Models were not compared: parameters are told of a model chosen among others.";
         return titled("parameters", PARAMETERS, text, &[]);
     }
-    let known = result.parameters.iter().filter(|own| own.std_deviation.is_finite());
-    let all: Vec<Interval> = known
-        .map(|own| {
-            let half = NORMAL_95 * own.std_deviation;
-            Interval {
-                label: own.name.clone(),
+    let all: Vec<Interval> = result
+        .physical
+        .iter()
+        .filter_map(|own| {
+            Some(Interval {
+                label: format!("{}, {}", own.name, own.unit).trim_end_matches(", ").to_owned(),
                 value: own.value,
-                ends: [own.value - half, own.value + half],
-                colour: if own.is_tied() { MEASURED } else { MODEL },
+                ends: own.interval?,
+                colour: if own.remark.is_some() { MEASURED } else { MODEL },
                 ..Interval::default()
-            }
+            })
         })
         .collect();
-    let text = "Value and 95 % interval, each on its own axis, by output error on the training runs. Grey: usual values say more of it than the runs. One that the runs do not determine is in the table alone.";
-    titled("parameters", PARAMETERS, text, &[intervals(&all), result.parameters_found().table()])
+    let values = result.parameters_found().table();
+    if all.is_empty() {
+        let text = "Values of the model; beside each stands why it has no interval.";
+        return titled("parameters", PARAMETERS, text, &[values]);
+    }
+    let text = "Value and 95 % interval, each on its own axis. Grey: usual values say more of it than the runs, or it is at its bound. One that the runs do not determine is in the table alone.";
+    titled("parameters", PARAMETERS, text, &[intervals(&all), values])
 }

@@ -1,10 +1,10 @@
 //! One sample through the whole chain: command, amplifier, law, linkage, flap, sensor.
 
 use crate::check::{check_finite, check_positive};
-use crate::stages::{StageMemory, StageStep, Step};
 use crate::{
     ActuatorModel, HysteresisLaw, LawMemory, LinkageStage, PreisachError, StartState, StepCounts,
 };
+use actuator_stages::{StageMemory, StageStep, Step};
 use serde::{Deserialize, Serialize};
 
 /// The state of an actuator between two samples: law, stages, counts.
@@ -43,7 +43,7 @@ impl ActuatorMemory {
     /// Temperature above the start, K; none without a heating stage.
     pub fn temperature_k(&self) -> Option<f64> {
         self.amplifier.iter().find_map(|memory| match memory {
-            StageMemory::Heating(memory) => Some(memory.temperature_k),
+            StageMemory::Heating(memory) => Some(memory.temperature_k()),
             _ => None,
         })
     }

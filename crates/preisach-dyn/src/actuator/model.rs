@@ -114,7 +114,7 @@ impl ActuatorModel {
         let sensor = sensor.map(|stage| ("sensor", stage));
         let stages = amplifier.chain(linkage).chain(sensor);
         stages.filter_map(|(list, (index, (stage, checked)))| {
-            let source = Box::new(checked.err()?);
+            let source = Box::new(checked.err()?.into());
             Some(PreisachError::Stage { list, index, stage, source })
         })
     }

@@ -18,6 +18,8 @@ pub use families::comparison::{
     Candidates, FittedModel, ModelComparison, ModelRow, Order, compare_models,
 };
 pub use families::family::Family;
+pub use families::folds::LeftOut;
+pub use families::quantities::{Quantity, QuantityUnit, quantities};
 pub use fit::compare::RecordFit;
 pub use fit::density::{DensitySpread, NoiseSource};
 pub use fit::output_error::{Covariance, Estimate};

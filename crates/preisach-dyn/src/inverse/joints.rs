@@ -2,11 +2,11 @@
 
 use super::newton::{REACH_RESOLUTION, Search};
 use super::{InverseSettings, PeriodicInverse};
-use crate::stages::FrictionStep;
 use crate::{
     ActuatorLaw, ActuatorModel, Backlash, CoulombFriction, LinearGain, LinkageStage,
     PeriodicSettings, PreisachError, VoltageRange,
 };
+use actuator_stages::FrictionStep;
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
 
 /// A joint that sticks, its half-width in deg.
@@ -32,7 +32,7 @@ impl LastJoint {
                     Joint::Gap { half_width_deg: half_deg(width_um) }
                 }
                 LinkageStage::CoulombFriction(CoulombFriction { width_um }) if width_um > 0.0 => {
-                    Joint::Friction(FrictionStep { limit: half_deg(width_um) })
+                    Joint::Friction(FrictionStep::new(half_deg(width_um)))
                 }
                 _ => return None,
             };

@@ -374,6 +374,41 @@ fn loops_inside_the_only_one_recorded_are_foretold() {
     }
 }
 
+/// A part of the density that no training loop determines takes what its neighbours have: held-out loops that visit it are
+/// foretold, where without this prior the fit is as free there as its solver.
+#[test]
+fn a_part_that_no_loop_determines_is_as_beside_it() {
+    let loops = |record_use, middle_volt: f64, amplitude_volt: f64| {
+        let wave = move |t: f64| {
+            let begins = BIAS_VOLT + (middle_volt - BIAS_VOLT) * (t / 5.0).min(1.0);
+            begins + amplitude_volt * (TAU * 0.2 * t).sin()
+        };
+        let of = record(&format!("{amplitude_volt} V about {middle_volt} V"), 20.0, 5e-3, wave);
+        let noise = |i: usize| 0.01 * (1e4 * (i as f64).sin()).sin();
+        let output_deg = plays(&of.voltage_volt);
+        let output_deg = output_deg.iter().enumerate().map(|(i, y)| y + noise(i)).collect();
+        BenchRecord { output_deg, record_use: Some(record_use), ..of }
+    };
+    let trained = [(65.0, 40.0), (45.0, 25.0), (85.0, 25.0), (65.0, 12.0), (40.0, 12.0)];
+    let trained = trained.map(|(middle, size)| loops(RecordUse::Train, middle, size));
+    let beyond = [(65.0, 84.0), (110.0, 38.0)];
+    let beyond = beyond.map(|(middle, size)| loops(RecordUse::HeldOut, middle, size));
+    let records = [&trained[..], &beyond[..]].concat();
+    let errors = |static_smoothness: f64| {
+        let settings = Settings { static_smoothness, ..Settings::default() };
+        let found = identify(&records, &settings).unwrap().records;
+        let side = |record_use| {
+            let of_use = found.iter().filter(move |r| r.record_use == record_use);
+            of_use.map(|r| r.static_only.nrmse).fold(0.0, f64::max)
+        };
+        [side(RecordUse::Train), side(RecordUse::HeldOut)]
+    };
+    let usual = Settings::default().static_smoothness;
+    let ([trained, with], [free, without]) = (errors(usual), errors(1e-12));
+    println!("trained {trained} and {free}, beyond them {with} and {without}");
+    assert!(trained < 1.5 * free && with < 0.5 * without, "{trained} {free} {with} {without}");
+}
+
 /// A record that begins as the amplifier is switched on: the output jumps, the command does not. With 0 V before it
 /// the model has the memory that the actuator has. A record from rest is left alone.
 #[test]

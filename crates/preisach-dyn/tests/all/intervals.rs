@@ -62,7 +62,7 @@ fn bench(rng: &mut ChaCha8Rng, command_noise: f64) -> Vec<BenchRecord> {
 /// The parameters found, and the model, its outputs those of the records.
 fn fitted(records: &[BenchRecord]) -> (Vec<Estimate>, ActuatorModel, f64) {
     let families = vec![Family::BoucWen];
-    let candidates = Candidates { families, orders: vec![] };
+    let candidates = Candidates { families, orders: vec![], ..Candidates::default() };
     let settings = Settings { levels: 4, deg_per_um: 1.0, ..Settings::default() };
     let table = compare_models(records, &settings, &candidates, &|| ()).unwrap();
     let fitted = table.rows[0].fitted.as_ref().unwrap();

@@ -18,6 +18,7 @@ mod oracles;
 mod oscillator;
 mod own_truth;
 mod periodic;
+mod relaxation;
 mod shipped_bench;
 mod stages;
 mod stop;

@@ -234,7 +234,8 @@ fn around() -> Vec<BenchRecord> {
 
 fn compared(records: &[BenchRecord], families: &[Family]) -> ModelComparison {
     let settings = Settings::default();
-    let candidates = Candidates { families: families.to_vec(), orders: Vec::new() };
+    let candidates =
+        Candidates { families: families.to_vec(), orders: Vec::new(), ..Candidates::default() };
     compare_models(records, &settings, &candidates, &|| ()).unwrap()
 }
 

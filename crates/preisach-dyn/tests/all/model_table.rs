@@ -6,8 +6,8 @@ use crate::common;
 use chacha20::ChaCha8Rng;
 use common::Wavy;
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Family, Finding, Order, RecordUse, Settings, StaticAccumulator,
-    compare_models, identify,
+    BenchRecord, Candidates, Family, Finding, LeftOut, Order, RecordUse, Settings,
+    StaticAccumulator, compare_models, identify,
 };
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, Lag, LinkageStage, LogCreep,
@@ -94,7 +94,11 @@ fn the_family_of_the_truth_is_chosen_and_its_times_are_found() {
     // the grid of the truth, and half of it
     let settings = Settings { levels: 10, rate_levels: 5, ..settings() };
     let order = |levels, static_smoothness| Order { levels, rate_levels: 5, static_smoothness };
-    let candidates = Candidates { families, orders: vec![order(5, 1e-4), order(10, 1e-7)] };
+    let candidates = Candidates {
+        families,
+        orders: vec![order(5, 1e-4), order(10, 1e-7)],
+        ..Candidates::default()
+    };
     let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
     assert_eq!(table.rows[table.chosen].family, Family::StaticPreisachRelaxation);
     assert_eq!(table.orders.len(), 3);
@@ -157,7 +161,9 @@ fn every_family_can_be_fitted_and_one_frequency_leaves_only_static_ones() {
         let refused = matches!(row.fitted, Err(PreisachError::NoTrainingRecord { .. }));
         assert_eq!(refused, row.family.needs_rate(), "{:?}", row.family);
     }
-    assert_eq!(alone.best().unwrap().family, Family::StaticPreisach);
+    // what it says of rate, creep can have; blocks in time of it choose
+    assert_eq!(alone.left_out, LeftOut::Blocks);
+    assert_eq!(alone.best().unwrap().family, Family::StaticPreisachCreep);
     assert!(alone.summary.findings.iter().any(|f| matches!(f, Finding::OneFrequency { .. })));
 }
 
@@ -166,7 +172,11 @@ fn standard_deviations_are_those_of_repeated_benches_with_coloured_noise() {
     const BENCHES: u32 = 24;
     let mut truth = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 1.0);
     truth.amplifier.push(AmplifierStage::Lag(Lag { tau_s: 0.02 }));
-    let candidates = Candidates { families: vec![Family::LinearLag], orders: Vec::new() };
+    let candidates = Candidates {
+        families: vec![Family::LinearLag],
+        orders: Vec::new(),
+        ..Candidates::default()
+    };
     let normal = Normal::new(0.0, 0.05).unwrap();
     let (mut found, mut stated) = (Vec::new(), 0.0);
     for seed in 0..BENCHES {
@@ -254,7 +264,7 @@ fn parameters_without_influence_cost_the_others_no_digits() {
             })
             .collect();
         let families = vec![Family::PrandtlIshlinskii];
-        let candidates = Candidates { families, orders: Vec::new() };
+        let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
         let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
         let fitted = table.rows[0].fitted.as_ref().unwrap();
         fitted.parameters.iter().map(|p| p.std_deviation).collect()
@@ -279,7 +289,7 @@ fn what_only_usual_values_say_is_called_tied() {
         .map(|run| record(&truth, run, || normal.sample(&mut rng)))
         .collect();
     let families = vec![Family::StaticPreisachRelaxation];
-    let candidates = Candidates { families, orders: Vec::new() };
+    let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
     let settings = Settings { levels: 10, rate_levels: 5, ..settings() };
     let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
     let parameters = &table.rows[0].fitted.as_ref().unwrap().parameters;
@@ -288,4 +298,50 @@ fn what_only_usual_values_say_is_called_tied() {
     assert!(!parameters[0].is_tied() && parameters[0].std_deviation < 0.2, "{parameters:?}");
     let at_once = &parameters[1];
     assert!(at_once.is_tied() && (0.5..1.5).contains(&at_once.std_deviation), "{at_once:?}");
+}
+
+/// A rest tells the noise of runs that never repeat; it is taken off before models are compared.
+#[test]
+fn the_noise_of_a_rest_takes_part_in_the_choice() {
+    const NOISE_DEG: f64 = 1.0;
+    let truth = bare(ActuatorLaw::StaticPreisach(static_law(12)));
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let normal = Normal::new(0.0, NOISE_DEG).unwrap();
+    // loops that fade: no cycle is like another
+    let fade = |depth: f64, hz: f64| {
+        let at = |i: u32| {
+            let t = 0.01 * f64::from(i);
+            BIAS_VOLT + depth * (1.0 - t / 44.0) * (TAU * hz * t).sin()
+        };
+        (format!("{hz} Hz {depth} V"), 0.01, (0..4000).map(at).collect::<Vec<f64>>())
+    };
+    let runs = [fade(85.0, 0.21), reversals(), fade(60.0, 0.31)];
+    let mut records: Vec<BenchRecord> =
+        runs.into_iter().map(|run| record(&truth, run, || normal.sample(&mut rng))).collect();
+    let candidates = Candidates {
+        families: vec![Family::BoucWen, Family::StaticPreisach],
+        orders: Vec::new(),
+        ..Candidates::default()
+    };
+    let table = |records: &[BenchRecord], rest_noise_deg| {
+        let candidates = Candidates { rest_noise_deg, ..candidates.clone() };
+        compare_models(records, &settings(), &candidates, &|| ()).unwrap()
+    };
+    let alone = table(&records, None);
+    let told = table(&records, Some(NOISE_DEG));
+    let at_rest = ("rest".into(), 0.01, vec![BIAS_VOLT; 2000]);
+    records.push(record(&truth, at_rest, || normal.sample(&mut rng)));
+    let beside = table(&records, None);
+    for own in [&alone, &told, &beside] {
+        let errors = own.rows.iter().map(|row| (row.cross_validation.unwrap(), row.noise));
+        println!("chosen {:?}: {:?}", own.rows[own.chosen].family, errors.collect::<Vec<_>>());
+    }
+    // unknown noise hides the misfit of the simpler family
+    assert!(alone.rows[0].noise <= 0.0);
+    assert_eq!(alone.rows[alone.chosen].family, Family::BoucWen);
+    for own in [&told, &beside] {
+        assert_eq!(own.rows[own.chosen].family, Family::StaticPreisach);
+    }
+    assert!((beside.rows[0].noise / told.rows[0].noise - 1.0).abs() < 0.05);
+    assert!((told.rows[1].noise / told.rows[1].cross_validation.unwrap() - 1.0).abs() < 0.05);
 }

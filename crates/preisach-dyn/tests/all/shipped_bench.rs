@@ -173,7 +173,7 @@ fn no_mode_is_chosen_for_the_records_shipped() {
     let without = [Family::BoucWen, Family::StaticPreisach, Family::DynamicPreisach];
     let with = Family::ALL.into_iter().filter(|family| family.has_mode());
     let families: Vec<Family> = without.into_iter().chain(with).collect();
-    let candidates = Candidates { families, orders: Vec::new() };
+    let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
     let table = compare_models(&records(), &settings(), &candidates, &|| ()).unwrap();
     assert_eq!(table.rows.len(), 6);
     for row in &table.rows {

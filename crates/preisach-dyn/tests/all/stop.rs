@@ -213,7 +213,7 @@ fn loops_that_lead_are_fitted_by_stops_and_their_viscosity_is_found() {
             .map(|(hz, amplitude)| run(&truth, hz, amplitude))
             .to_vec();
     let families = vec![Family::Linear, Family::PrandtlStop, Family::StaticPreisach];
-    let candidates = Candidates { families, orders: Vec::new() };
+    let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
     let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
     let best = table.best().unwrap();
     assert_eq!(best.family, Family::PrandtlStop);
@@ -234,7 +234,11 @@ fn loops_that_lead_are_fitted_by_stops_and_their_viscosity_is_found() {
 fn one_frequency_says_nothing_about_viscosity() {
     let truth = actuator(ActuatorLaw::PrandtlStop(law(&[(0.25, 2.0)], 0.0, 0.1)));
     let records = [run(&truth, 0.25, 1.0), run(&truth, 0.25, 0.5)];
-    let candidates = Candidates { families: vec![Family::PrandtlStop], orders: Vec::new() };
+    let candidates = Candidates {
+        families: vec![Family::PrandtlStop],
+        orders: Vec::new(),
+        ..Candidates::default()
+    };
     let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
     let ActuatorLaw::PrandtlStop(found) = &table.model().unwrap().law else { panic!("law") };
     assert_eq!(found.parameters().viscosity_deg_s_per_volt, 0.0);
@@ -257,7 +261,7 @@ fn an_output_that_lags_is_refused_with_its_reason() {
     ));
     let records = [run(&truth, 0.25, 1.0), run(&truth, 0.25, 0.5)];
     let families = vec![Family::PrandtlStop, Family::StaticPreisach];
-    let candidates = Candidates { families, orders: Vec::new() };
+    let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
     let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
     let message = table.rows[0].fitted.as_ref().unwrap_err().to_string();
     assert!(message.contains("the output lags the input"), "{message}");

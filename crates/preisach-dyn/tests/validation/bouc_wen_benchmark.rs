@@ -187,7 +187,8 @@ static TABLE: LazyLock<Result<ModelComparison, Failure>> = LazyLock::new(|| {
         zero: FlapZero::AsRecorded,
         ..Settings::default()
     };
-    let candidates = Candidates { families: Family::ALL.to_vec(), orders: Vec::new() };
+    let candidates =
+        Candidates { families: Family::ALL.to_vec(), orders: Vec::new(), ..Candidates::default() };
     Ok(compare_models(&records, &settings, &candidates, &|| ())?)
 });
 

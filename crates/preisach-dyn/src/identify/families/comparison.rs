@@ -2,6 +2,7 @@
 
 use crate::identify::families::by_family;
 use crate::identify::families::family::{Family, Fitted, Given};
+use crate::identify::families::folds::{self, Fold, Folds, LeftOut};
 use crate::identify::fit::linear_mode::LinearMode;
 use crate::identify::fit::output_error::Estimate;
 use crate::identify::fit::preisach::trained_range;
@@ -9,7 +10,9 @@ use crate::identify::fit::roles::Bench;
 use crate::identify::fit::training::Training;
 use crate::identify::fit::{compare, static_fit, validate};
 use crate::identify::records::prepared::Prepared;
-use crate::identify::{BenchRecord, Identifiability, RecordFit, RecordUse, Settings};
+use crate::identify::{
+    BenchRecord, Identifiability, RecordFit, RecordUse, RestNoise, Settings, Waveform,
+};
 use crate::{ActuatorModel, PreisachError, PreisachGrid};
 use rayon::prelude::*;
 use rotor_base::mean_square;
@@ -36,6 +39,12 @@ impl Order {
         let Settings { levels, rate_levels, static_smoothness, .. } = *settings;
         Self { levels, rate_levels, static_smoothness }
     }
+
+    /// Settings with this order in the place of theirs.
+    pub(crate) fn within(self, settings: &Settings) -> Settings {
+        let Self { levels, rate_levels, static_smoothness } = self;
+        Settings { levels, rate_levels, static_smoothness, ..settings.clone() }
+    }
 }
 
 /// What a comparison tries.
@@ -47,6 +56,8 @@ pub struct Candidates {
     pub families: Vec<Family>,
     /// Orders tried for the family chosen, beside that of the settings; none leaves it at that.
     pub orders: Vec<Order>,
+    /// Noise of the outputs that records at rest show beside those compared, deg; none leaves it to what is compared.
+    pub rest_noise_deg: Option<f64>,
 }
 
 impl Default for Candidates {
@@ -55,7 +66,7 @@ impl Default for Candidates {
         let order =
             |(levels, static_smoothness)| Order { levels, rate_levels: 4, static_smoothness };
         let orders = [(12, 1e-4), (12, 1e-6), (24, 1e-4), (24, 1e-6)].map(order);
-        Self { families: Family::ALL.to_vec(), orders: orders.to_vec() }
+        Self { families: Family::ALL.to_vec(), orders: orders.to_vec(), rest_noise_deg: None }
     }
 }
 
@@ -66,12 +77,11 @@ pub struct ModelRow {
     pub family: Family,
     /// Order of its memory, where it has one.
     pub order: Order,
-    /// Root mean square of the NRMSE of training records that were left out of the fit, a frequency or
-    /// an amplitude at a time;
-    /// none if there were too few to leave one out.
+    /// Root mean square of the NRMSE of what was left out of the fit in turn, [`ModelComparison::left_out`]; none if nothing
+    /// could be left out.
     pub cross_validation: Option<f64>,
-    /// What the noise of those records contributes to it, as a share of their spread; 0 where it is not known. A model that misses
-    /// nothing has this error.
+    /// What the noise contributes to it, as a share of the spread; 0 where it is not known. A model that misses nothing has
+    /// this error.
     pub noise: f64,
     /// The model fitted to all training records, or why there is none.
     pub fitted: Result<FittedModel, PreisachError>,
@@ -94,6 +104,8 @@ pub struct FittedModel {
 pub struct ModelComparison {
     /// One row per family, as asked for.
     pub rows: Vec<ModelRow>,
+    /// What was left out of the fits in turn.
+    pub left_out: LeftOut,
     /// The row of the family chosen.
     pub chosen: usize,
     /// The chosen family on several grids, by levels; here slow records are left out in turn too, so
@@ -107,6 +119,8 @@ pub struct ModelComparison {
     pub zero_deg: f64,
     /// What the records cannot tell.
     pub summary: Identifiability,
+    /// Weight of the smoothness of the rate maps, of all fits.
+    pub rate_smoothness: f64,
 }
 
 impl ModelComparison {
@@ -137,10 +151,11 @@ impl ModelComparison {
 ///
 /// All fast training records of one frequency are left out of the fit in turn and simulated, then all
 /// of one amplitude: conditions, because the model will be used at others than the bench ran. Where no
-/// record is fast, each slow one is left out in turn. The family with the smallest error is chosen, a
-/// simpler one if it is within 3 %, both after the noise that repeated cycles show is taken off; then the order of the memory with the smallest error: there
-/// smoothness keeps large grids in check. Held-out records are never looked at for choosing: they only
-/// stand in the table. `done` is called after each row.
+/// record is fast, each slow one is left out in turn. Of a single training record it is blocks in time: the model is run
+/// through the whole record and scored on the block. The family with the smallest error is chosen, a simpler one if it is
+/// within 3 %, both after the noise is taken off that repeated cycles, records at rest or, of a single record, differences of
+/// neighbours show; then the order of the memory with the smallest error: there smoothness keeps large grids in check.
+/// Held-out records are never looked at for choosing: they only stand in the table. `done` is called after each row.
 ///
 /// # Errors
 /// As [`crate::identify::identify`] for the records; a family that cannot be fitted has its error in its row.
@@ -186,19 +201,20 @@ pub fn compare_models(
         let asked_for = tried.iter().position(|order| *order == own);
         chosen_order = if by_error { best(&orders, 1.0) } else { asked_for.unwrap_or(0) };
     }
-    let Contest { zero_deg, summary, .. } = contest;
+    let Contest { zero_deg, summary, left_out, smoothness: rate_smoothness, .. } = contest;
     let ids = records.iter().map(|r| r.id.clone());
     let records = ids.zip(bench.uses().iter().copied()).collect();
-    Ok(ModelComparison { rows, chosen, orders, chosen_order, records, zero_deg, summary })
-}
-
-/// What is left out in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Folds {
-    /// Frequencies and amplitudes of the fast records.
-    Conditions,
-    /// Slow records too.
-    All,
+    Ok(ModelComparison {
+        rows,
+        left_out,
+        chosen,
+        orders,
+        chosen_order,
+        records,
+        zero_deg,
+        summary,
+        rate_smoothness,
+    })
 }
 
 /// The fit of a family to all training records, and the errors of the folds left out.
@@ -236,6 +252,10 @@ struct Contest<'a> {
     smoothness: f64,
     families: Vec<Family>,
     mode: Option<LinearMode>,
+    /// What is left out of the fits of families.
+    left_out: LeftOut,
+    /// Noise that records at rest show, deg.
+    rest_noise_deg: Option<f64>,
 }
 
 impl<'a> Contest<'a> {
@@ -258,7 +278,22 @@ impl<'a> Contest<'a> {
         if families == Family::ALL && !mode.is_some_and(|found| found.is_shown) {
             families.retain(|family| !family.has_mode());
         }
-        Ok(Self { bench, prepared, settings, zero_deg, summary, smoothness, families, mode })
+        let left_out = LeftOut::of(&folds::of(&training, Folds::Conditions));
+        let rests = prepared.iter().filter(|r| r.drive.waveform == Waveform::Constant);
+        let rests: Vec<f64> = rests.map(|r| RestNoise::of_record(r.record).rms_deg()).collect();
+        let own = (!rests.is_empty()).then(|| mean_square(&rests).sqrt());
+        Ok(Self {
+            bench,
+            prepared,
+            settings,
+            zero_deg,
+            summary,
+            smoothness,
+            families,
+            mode,
+            left_out,
+            rest_noise_deg: candidates.rest_noise_deg.or(own),
+        })
     }
 
     /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
@@ -270,34 +305,23 @@ impl<'a> Contest<'a> {
         which: Folds,
         known: Option<&Trial>,
     ) -> Result<(ModelRow, Option<Trial>), PreisachError> {
-        let Order { levels, rate_levels, static_smoothness } = order;
-        let settings = Settings { levels, rate_levels, static_smoothness, ..self.settings.clone() };
+        let settings = order.within(self.settings);
         settings.check()?;
-        let grid = PreisachGrid::new(settings.range_volt, levels)?;
+        let grid = PreisachGrid::new(settings.range_volt, order.levels)?;
         let anew = (order != Order::of(self.settings))
             .then(|| self.bench.prepared(&grid, &settings))
             .transpose()?;
         let prepared = anew.as_ref().unwrap_or(&self.prepared);
         let training = Training::of(prepared, grid, &settings)?;
-        let Training { slow, fast, .. } = &training;
         let fit = |training: &Training, whole: Option<&Fitted>| {
             let (smoothness, mode) = (self.smoothness, self.mode.as_ref());
             by_family::fit(family, training, Given { smoothness, mode, whole })
         };
         let whole = known.map_or_else(|| fit(&training, None), |known| Ok(known.whole.clone()));
-        // places in the slow and the fast records, one after another
-        let left_out = |fold: &Vec<usize>, whole: &Fitted| -> Result<f64, PreisachError> {
-            let all = training.all();
-            let model = fit(&training.without(fold), Some(whole))?.model;
-            let tested = all.iter().enumerate().filter(|(place, _)| fold.contains(place));
-            let errors = tested.map(|(_, r)| Ok(compare::training_nrmse(&model, r)?.powi(2)));
-            Ok(errors.sum::<Result<f64, PreisachError>>()? / fold.len() as f64)
+        let left_out = |fold: &Fold, whole: &Fitted| {
+            fold.square_error(&training, |rest| Ok(fit(rest, Some(whole))?.model))
         };
-        let mut folds = conditions(fast, slow.len());
-        let fewest = if fast.is_empty() { 2 } else { 3 };
-        if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
-            folds.extend((0..slow.len()).map(|place| vec![place]));
-        }
+        let folds = folds::of(&training, which);
         let trial = whole.as_ref().ok().map(|whole| {
             let mut errors = known.map_or_else(Vec::new, |known| known.errors.clone());
             // the folds of conditions come first
@@ -306,7 +330,7 @@ impl<'a> Contest<'a> {
             errors.extend(rest.collect::<Vec<f64>>());
             Trial { whole: whole.clone(), errors }
         });
-        let noise = noise_of(&training.all(), &folds);
+        let noise = folds::noise(&training, &folds, self.rest_noise_deg);
         let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
         let cross_validation =
             (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
@@ -320,49 +344,3 @@ impl<'a> Contest<'a> {
         Ok((ModelRow { family, order, cross_validation, noise, fitted }, trial))
     }
 }
-
-/// The error of folds that a model without misfit has: the noise of the records over their spread. Of a record that does not
-/// repeat it is that of the others; 0 where none repeats.
-fn noise_of(all: &[&Prepared], folds: &[Vec<usize>]) -> f64 {
-    let known: Vec<f64> = all.iter().filter_map(|r| r.noise.map(|noise| noise.std_deg)).collect();
-    let Some(usual_deg) = (!known.is_empty()).then(|| mean_square(&known).sqrt()) else {
-        return 0.0;
-    };
-    let square = |&place: &usize| {
-        let record = all[place];
-        (record.noise.map_or(usual_deg, |noise| noise.std_deg) / record.spread_deg).powi(2)
-    };
-    let of = |fold: &Vec<usize>| fold.iter().map(square).sum::<f64>() / fold.len() as f64;
-    (folds.iter().map(of).sum::<f64>() / folds.len().max(1) as f64).sqrt()
-}
-
-/// What is left out of the fast records in turn, as places from `first` on: all records of one
-/// frequency, and all of one amplitude, because a model is used at frequencies and amplitudes the bench
-/// did not run. Single records where there is only one frequency and one amplitude.
-fn conditions(fast: &[&Prepared], first: usize) -> Vec<Vec<usize>> {
-    let groups = |value: &dyn Fn(&Prepared) -> f64| {
-        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
-        for (place, record) in fast.iter().enumerate() {
-            let own = value(record);
-            match groups.iter_mut().find(|(v, _)| (own / *v - 1.0).abs() <= SAME) {
-                Some((_, members)) => members.push(first + place),
-                None => groups.push((own, vec![first + place])),
-            }
-        }
-        let members: Vec<Vec<usize>> = groups.into_iter().map(|(_, members)| members).collect();
-        if members.len() < 2 { Vec::new() } else { members }
-    };
-    let mut folds = groups(&|r| r.drive.strongest_hz());
-    for group in groups(&|r| r.drive.amplitude_volt) {
-        if !folds.contains(&group) {
-            folds.push(group);
-        }
-    }
-    if folds.is_empty() && fast.len() >= 2 {
-        folds = (0..fast.len()).map(|place| vec![first + place]).collect();
-    }
-    folds
-}
-
-/// Frequencies and amplitudes that differ by less than this share are one.
-const SAME: f64 = 0.05;

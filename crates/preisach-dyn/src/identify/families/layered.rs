@@ -8,11 +8,11 @@ use crate::identify::fit::refine::{Refined, SHAPE, reshaped};
 use crate::identify::fit::training::Training;
 use crate::identify::fit::{compare, static_fit};
 use crate::identify::records::prepared::Prepared;
-use crate::stages::{StageStep, Step};
 use crate::{
     Accommodation, ActuatorLaw, ActuatorModel, Calibration, LinkageStage, LogCreep, PlayMap,
     PreisachError, Relaxation, RelaxationElement, StaticPreisach,
 };
+use actuator_stages::{StageStep, Step};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -20,7 +20,8 @@ use rayon::prelude::*;
 const CREEP_RATES: [f64; 5] = [0.005, 0.01, 0.015, 0.02, 0.03];
 /// Rounds of static map and stages.
 const ROUNDS: usize = 5;
-/// Largest creep per decade of a fit.
+/// Least and largest creep per decade of a fit.
+const LEAST_CREEP: f64 = 1e-4;
 const MOST_CREEP: f64 = 0.06;
 
 /// A record with a linear stage behind the law taken off its output.
@@ -59,38 +60,53 @@ pub(crate) fn creep(
     };
     let given_rate = given.whole.and_then(|whole| whole.model.linkage.iter().find_map(per_decade));
     let rates = given_rate.map_or(CREEP_RATES.to_vec(), |rate| vec![rate]);
-    let tried: Vec<Result<(f64, Fitted), PreisachError>> = rates
-        .par_iter()
-        .map(|&rate| {
-            let creep = LinkageStage::LogCreep(LogCreep::new(rate));
-            let strip = |r: &&Prepared| {
-                without_stage(r.record, &creep.prepared(r.record.time_step_s, &unit))
-            };
-            let stripped: Vec<BenchRecord> = all.iter().map(strip).collect();
-            let prepare = |(r, record): (&&Prepared, _)| {
-                let drive = r.drive.clone();
-                Prepared::new(record, drive, r.record_use, r.is_slow, &grid, settings)
-            };
-            let own = all.iter().zip(&stripped).map(prepare).collect::<Result<Vec<_>, _>>()?;
-            let own = Training::of(&own, grid, settings)?;
-            let map = static_fit::as_measured(&own)?;
-            let (law, parameters) = if family.needs_rate() {
-                let fit = RateFit::new(&own, map, given.uncertainty())?;
-                let Refined { law, parameters, .. } = fit.refined;
-                (law, parameters)
-            } else {
-                let law = StaticPreisach::new(grid, map)?;
-                (ActuatorLaw::StaticPreisach(law), Vec::new())
-            };
-            let mut model = settings.actuator_of(law);
-            model.linkage.push(creep);
-            let squares = all.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
-            Ok((squares.sum::<Result<f64, PreisachError>>()?, Fitted { model, parameters }))
-        })
-        .collect();
-    let tried = tried.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let fit_at = |rate: f64| -> Result<(f64, Fitted), PreisachError> {
+        let creep = LinkageStage::LogCreep(LogCreep::new(rate));
+        let strip =
+            |r: &&Prepared| without_stage(r.record, &creep.prepared(r.record.time_step_s, &unit));
+        let stripped: Vec<BenchRecord> = all.iter().map(strip).collect();
+        let prepare = |(r, record)| {
+            let r: &&Prepared = r;
+            let drive = r.drive.clone();
+            let own = Prepared::new(record, drive, r.record_use, r.is_slow, &grid, settings);
+            own.map(|own| own.without(r.left_out.clone()))
+        };
+        let own = all.iter().zip(&stripped).map(prepare).collect::<Result<Vec<_>, _>>()?;
+        let own = Training::of(&own, grid, settings)?;
+        let map = static_fit::as_measured(&own)?;
+        let (law, parameters) = if family.needs_rate() {
+            let fit = RateFit::new(&own, map, given.uncertainty())?;
+            let Refined { law, parameters, .. } = fit.refined;
+            (law, parameters)
+        } else {
+            let law = StaticPreisach::new(grid, map)?;
+            (ActuatorLaw::StaticPreisach(law), Vec::new())
+        };
+        let mut model = settings.actuator_of(law);
+        model.linkage.push(creep);
+        let squares = all.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
+        Ok((squares.sum::<Result<f64, PreisachError>>()?, Fitted { model, parameters }))
+    };
+    let tried: Vec<_> = rates.par_iter().map(|&rate| fit_at(rate)).collect();
+    let mut tried = tried.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let squares: Vec<f64> = tried.iter().map(|own| own.0).collect();
+    // what is left is nearly a parabola of the rate
+    if let Some(rate) = lowest(&rates, &squares) {
+        tried.push(fit_at(rate)?);
+    }
     let best = tried.into_iter().reduce(|best, next| if next.0 < best.0 { next } else { best });
     best.map(|(_, fitted)| fitted).ok_or(PreisachError::NotFitted { family: family.name() })
+}
+
+/// The rate of creep at the lowest point of the parabola through the best one tried and its neighbours; none of fewer than
+/// three, or where they lie on no such parabola.
+fn lowest(rates: &[f64], squares: &[f64]) -> Option<f64> {
+    let best = (0..squares.len()).min_by(|&a, &b| squares[a].total_cmp(&squares[b]))?;
+    let first = best.saturating_sub(1).min(rates.len().checked_sub(3)?);
+    let (r, s) = (&rates[first..first + 3], &squares[first..first + 3]);
+    let slopes = [(s[1] - s[0]) / (r[1] - r[0]), (s[2] - s[1]) / (r[2] - r[1])];
+    let bend = (slopes[1] - slopes[0]) / (r[2] - r[0]);
+    (bend > 0.0).then(|| (0.5 * (r[0] + r[1] - slopes[0] / bend)).clamp(LEAST_CREEP, MOST_CREEP))
 }
 
 /// Parameters of the stages of [`relaxation`].

@@ -13,7 +13,7 @@ const PLAYS: usize = 64;
 /// Grading of the half-widths: small ones lie closer.
 const GRADING: f64 = 1.5;
 /// Samples a record gives at most; a denser one is thinned.
-const MOST_SAMPLES: usize = 4000;
+const MOST_SAMPLES: usize = 16_000;
 /// Weight between neighbours: what no loop determines is as beside it.
 const SMOOTHNESS: f64 = 1e-6;
 
@@ -39,7 +39,8 @@ pub(crate) fn fit(training: &Training<'_>) -> Result<Fitted, PreisachError> {
     let spread_deg = records.iter().map(|r| r.spread_deg).fold(0.0, f64::max);
     let samples: usize = records.iter().map(|r| r.record.trained_samples().len()).sum();
     let mut program = LeastSquaresProgram::new(1 + PLAYS);
-    for record in records.iter().map(|r| r.record) {
+    for prepared in &records {
+        let record = prepared.record;
         let trained = record.trained_samples();
         let stride = trained.len().div_ceil(MOST_SAMPLES).max(1);
         let mut plays_volt = vec![record.voltage_volt[0]; PLAYS];
@@ -47,7 +48,8 @@ pub(crate) fn fit(training: &Training<'_>) -> Result<Fitted, PreisachError> {
             for (w, r) in plays_volt.iter_mut().zip(&half_widths_volt) {
                 *w = w.min(u + r).max(u - r);
             }
-            if i >= trained.start && (i - trained.start).is_multiple_of(stride) {
+            let trains = i >= trained.start && !prepared.left_out.contains(&i);
+            if trains && (i - trained.start).is_multiple_of(stride) {
                 let mut row: Row = vec![(0, 1.0)];
                 row.extend(
                     (1..).zip(plays_volt.iter().map(|w| (w - middle_volt) / half_swing_volt)),

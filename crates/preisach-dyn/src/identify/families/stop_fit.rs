@@ -64,7 +64,8 @@ pub(crate) fn fit(training: &Training<'_>) -> Result<Fitted, PreisachError> {
         let mut last_volt = record.voltage_volt[0];
         for (i, &u) in record.voltage_volt[..trained.end].iter().enumerate() {
             unit.step(&mut memory, u, record.time_step_s);
-            if i >= trained.start && (i - trained.start).is_multiple_of(stride) {
+            let trains = i >= trained.start && !prepared.left_out.contains(&i);
+            if trains && (i - trained.start).is_multiple_of(stride) {
                 let mut row: Row = vec![(0, 1.0), (1, (u - range.middle_volt()) / half_volt)];
                 row.extend((2..).zip(memory.stops_volt().map(|s| s / half_volt)));
                 if viscous {

@@ -7,6 +7,7 @@ use crate::identify::records::record::spread;
 use crate::{ActuatorModel, PreisachError, StepCounts};
 use rotor_base::{mean_square, wrap_degrees};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A model against one record.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -84,10 +85,18 @@ pub(crate) fn training_nrmse(
     model: &ActuatorModel,
     prepared: &Prepared,
 ) -> Result<f64, PreisachError> {
+    nrmse_over(model, prepared, prepared.record.trained_samples())
+}
+
+/// Root mean square error over some samples of a record, run from its first, over the spread of those that train.
+pub(crate) fn nrmse_over(
+    model: &ActuatorModel,
+    prepared: &Prepared,
+    samples: Range<usize>,
+) -> Result<f64, PreisachError> {
     let Prepared { record, spread_deg, .. } = prepared;
-    let trained = record.trained_samples();
-    let simulation = model.simulate(&record.voltage_volt[..trained.end], record.time_step_s)?;
-    let errors = trained.map(|i| simulation.output_deg[i] - record.output_deg[i]);
+    let simulation = model.simulate(&record.voltage_volt[..samples.end], record.time_step_s)?;
+    let errors = samples.map(|i| simulation.output_deg[i] - record.output_deg[i]);
     Ok(mean_square(&errors.collect::<Vec<_>>()).sqrt() / spread_deg)
 }
 

@@ -4,10 +4,10 @@ use crate::identify::fit::output_error::OutputError;
 use crate::identify::fit::static_fit;
 use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
-use crate::stages::{StageStep, Step};
 use crate::{
     ActuatorLaw, AmplifierStage, Lag, LinearGain, PreisachError, Resonance, StaticPreisach,
 };
+use actuator_stages::{StageStep, Step};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 

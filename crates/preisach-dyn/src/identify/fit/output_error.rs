@@ -223,7 +223,9 @@ impl<'a> OutputError<'a> {
 
     /// Samples of a record that give residuals.
     pub(crate) fn kept(record: &Prepared) -> impl Iterator<Item = usize> + Clone + use<> {
-        record.record.trained_samples().step_by(Self::stride(record))
+        let left_out = record.left_out.clone();
+        let trained = record.record.trained_samples().step_by(Self::stride(record));
+        trained.filter(move |index| !left_out.contains(index))
     }
 
     /// Residuals at some parameters, with the passage they come from; none if the model diverges.

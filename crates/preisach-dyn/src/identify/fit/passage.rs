@@ -1,8 +1,8 @@
 //! The way of a model over the records, kept part by part.
 
 use crate::identify::records::prepared::Prepared;
-use crate::stages::Step;
 use crate::{ActuatorLaw, ActuatorModel, Drive};
+use actuator_stages::Step;
 use rayon::prelude::*;
 use std::borrow::Cow;
 

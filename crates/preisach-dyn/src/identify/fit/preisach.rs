@@ -61,9 +61,10 @@ fn without_rate_terms(model: &DynamicPreisach, record: &BenchRecord) -> Vec<f64>
 /// Least squares line through the quasi-static records, each weighing alike.
 pub(crate) fn fit_linear(slow: &[&Prepared]) -> LinearGain {
     let [mut w, mut u1, mut u2, mut y1, mut uy] = [0.0; 5];
-    for Prepared { record, .. } in slow {
+    for Prepared { record, left_out, .. } in slow {
         let weight = 1.0 / record.output_deg.len() as f64;
-        for (&u, &y) in record.voltage_volt.iter().zip(&record.output_deg) {
+        let pairs = record.voltage_volt.iter().zip(&record.output_deg).enumerate();
+        for (_, (&u, &y)) in pairs.filter(|(index, _)| !left_out.contains(index)) {
             w += weight;
             u1 += weight * u;
             u2 += weight * u * u;

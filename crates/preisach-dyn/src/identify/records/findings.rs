@@ -143,9 +143,7 @@ pub enum Finding {
 impl Finding {
     /// What a record whose command never changes tells.
     pub fn of_rest(record: &BenchRecord) -> Self {
-        let output = &record.output_deg[record.judged_samples()];
-        let noise = RestNoise::of(output, record.time_step_s);
-        Self::ConstantCommand { id: record.id.clone(), noise }
+        Self::ConstantCommand { id: record.id.clone(), noise: RestNoise::of_record(record) }
     }
 
     /// What it means for the model.

@@ -1,10 +1,11 @@
 //! Noise from what does not repeat, without any model.
 
 use crate::check::extremes;
+use crate::identify::BenchRecord;
 use crate::laws::play_map::split;
 use rotor_base::{mean_square, significant};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
 /// What the repeated cycles of a record say about its noise.
 ///
@@ -83,6 +84,11 @@ const LEAST_PERIODS: f64 = 5.0;
 const HUM_SIGMAS: f64 = 5.0;
 
 impl RestNoise {
+    /// The noise of a record at rest, where it is judged.
+    pub fn of_record(record: &BenchRecord) -> Self {
+        Self::of(&record.output_deg[record.judged_samples()], record.time_step_s)
+    }
+
     /// The noise of the output of a record at rest.
     pub(crate) fn of(output_deg: &[f64], time_step_s: f64) -> Self {
         let count = output_deg.len() as f64;
@@ -121,6 +127,11 @@ impl RestNoise {
 }
 
 impl RestNoise {
+    /// Root mean square of noise and hum, deg: what no model of the actuator follows.
+    pub fn rms_deg(&self) -> f64 {
+        self.std_deg.hypot(self.hum_deg * FRAC_1_SQRT_2)
+    }
+
     /// It in words, with the symbol of the unit of the output.
     pub fn words(&self, output: &str) -> String {
         let Self { std_deg, drift_deg_per_min, hum_deg, hum_hz } = *self;
@@ -141,6 +152,11 @@ pub(crate) struct Fine {
 }
 
 impl Fine {
+    /// Root mean square of noise and rounding, deg.
+    pub(crate) fn rms_deg(&self) -> f64 {
+        self.std_deg.max(self.quantum_deg / 12.0_f64.sqrt())
+    }
+
     /// From differences of neighbours alone, so that neither a model nor repeated cycles are needed.
     ///
     /// ```text

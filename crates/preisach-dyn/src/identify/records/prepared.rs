@@ -5,6 +5,7 @@ use crate::identify::records::noise::CycleNoise;
 use crate::identify::records::record::spread;
 use crate::identify::{BenchRecord, Drive, RecordUse, Settings, Waveform};
 use crate::{PlayMemory, PreisachError, PreisachGrid, StartState};
+use std::ops::Range;
 
 /// Samples a quasi-static record gives to the static fit at most; a denser one is thinned.
 const MOST_STATIC_SAMPLES: usize = 4000;
@@ -12,6 +13,7 @@ const MOST_STATIC_SAMPLES: usize = 4000;
 const MOST_RATE_SAMPLES: usize = 600;
 
 /// A record made ready: its drive, its averaged cycles, the play states where they are needed.
+#[derive(Clone)]
 pub(crate) struct Prepared<'a> {
     pub(crate) record: &'a BenchRecord,
     pub(crate) spread_deg: f64,
@@ -25,6 +27,8 @@ pub(crate) struct Prepared<'a> {
     pub(crate) noise: Option<CycleNoise>,
     /// Samples the fits look at; empty for held-out records.
     pub(crate) samples: Vec<usize>,
+    /// A block in time among those that train which fits do not look at; empty for none.
+    pub(crate) left_out: Range<usize>,
     levels: usize,
     /// Play states at those samples, one row of `levels` each.
     states: Vec<f64>,
@@ -64,11 +68,21 @@ impl<'a> Prepared<'a> {
             cycles,
             noise,
             samples: range.step_by(stride).collect(),
+            left_out: 0..0,
             levels: grid.levels(),
             states: Vec::new(),
         };
         prepared.find_states(grid);
         Ok(prepared)
+    }
+
+    /// With a block in time left out of what fits look at; the memory is run through it all the same.
+    pub(crate) fn without(mut self, block: Range<usize>) -> Self {
+        let kept = self.states().filter(|(index, _)| !block.contains(index));
+        let (samples, states): (Vec<usize>, Vec<&[f64]>) = kept.unzip();
+        let states = states.concat();
+        (self.samples, self.states, self.left_out) = (samples, states, block);
+        self
     }
 
     /// Runs the memory over the record, from rest at its first voltage.

@@ -22,13 +22,25 @@ pub(crate) enum Kind {
     Creep,
 }
 
+/// The runs of a bench.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Runs {
+    /// Slow runs and sines of 1 and 10 Hz.
+    Usual,
+    /// Runs of at most 0.5 Hz, a staircase and a mixture of tones among them.
+    Slow,
+    /// One record alone: a slow sine that fades.
+    OneFade,
+    /// One record alone: a staircase, then a slow sine.
+    OneOfStepsAndSine,
+}
+
 /// A kind of actuator on a kind of bench.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Bench {
     pub(crate) name: &'static str,
     pub(crate) kind: Kind,
-    /// Runs of at most 0.5 Hz, a staircase and a mixture of tones among them; or slow runs and sines of 1 and 10 Hz.
-    pub(crate) is_slow: bool,
+    pub(crate) runs: Runs,
     /// Seeds it is judged by.
     pub(crate) seeds: u64,
     /// Largest error of identification over that of plays.
@@ -40,25 +52,36 @@ const TIE: f64 = 1.02;
 
 /// Eight benches. On the first both leave no more than what noise does: many draws tell them apart.
 pub(crate) const BENCHES: [Bench; 8] = [
-    bench("plays", Kind::Plays, false, 12, TIE),
-    bench("relays", Kind::Relays, false, 3, TIE),
-    bench("lag", Kind::Lag, false, 3, TIE),
-    bench("Bouc-Wen", Kind::BoucWen, false, 3, TIE),
-    bench("creep", Kind::Creep, false, 3, TIE),
-    bench("slow relays", Kind::Relays, true, 3, TIE),
+    bench("plays", Kind::Plays, Runs::Usual, 12, TIE),
+    bench("relays", Kind::Relays, Runs::Usual, 3, TIE),
+    bench("lag", Kind::Lag, Runs::Usual, 3, TIE),
+    bench("Bouc-Wen", Kind::BoucWen, Runs::Usual, 3, TIE),
+    bench("creep", Kind::Creep, Runs::Usual, 3, TIE),
+    bench("slow relays", Kind::Relays, Runs::Slow, 3, TIE),
     // what neither plays nor a static model of slow runs can have
-    bench("slow creep", Kind::Creep, true, 3, 0.5),
-    bench("slow Bouc-Wen", Kind::BoucWen, true, 3, TIE),
+    bench("slow creep", Kind::Creep, Runs::Slow, 3, 0.5),
+    bench("slow Bouc-Wen", Kind::BoucWen, Runs::Slow, 3, TIE),
+];
+
+/// Benches of one record each: nothing but blocks in time to choose a model by.
+pub(crate) const ONE_RECORD: [Bench; 7] = [
+    bench("fade, plays", Kind::Plays, Runs::OneFade, 4, TIE),
+    bench("fade, relays", Kind::Relays, Runs::OneFade, 3, TIE),
+    bench("fade, creep", Kind::Creep, Runs::OneFade, 3, TIE),
+    bench("fade, Bouc-Wen", Kind::BoucWen, Runs::OneFade, 3, TIE),
+    bench("steps and sine, plays", Kind::Plays, Runs::OneOfStepsAndSine, 4, TIE),
+    bench("steps and sine, relays", Kind::Relays, Runs::OneOfStepsAndSine, 3, TIE),
+    bench("steps and sine, creep", Kind::Creep, Runs::OneOfStepsAndSine, 3, TIE),
 ];
 
 const fn bench(
     name: &'static str,
     kind: Kind,
-    is_slow: bool,
+    runs: Runs,
     seeds: u64,
     most_of_plays: f64,
 ) -> Bench {
-    Bench { name, kind, is_slow, seeds, most_of_plays }
+    Bench { name, kind, runs, seeds, most_of_plays }
 }
 
 /// A run not used for training: its command and what the actuator does without noise.
@@ -281,32 +304,46 @@ impl Actuator {
 impl Bench {
     /// The bench of a seed, its records with white noise of a share of the deviation of the first of them.
     pub(crate) fn made(&self, seed: u64, noise_share: f64) -> Made {
-        let mut rng = ChaCha8Rng::seed_from_u64(
-            1000 * seed + 10 * self.kind as u64 + u64::from(self.is_slow),
-        );
+        let mut rng =
+            ChaCha8Rng::seed_from_u64(1000 * seed + 10 * self.kind as u64 + self.runs as u64);
         let (low, high) =
             [(-20.0, 150.0), (0.0, 100.0), (0.0, 150.0), (-30.0, 120.0)][rng.random_range(0..4)];
         let mut draw = |low: f64, high: f64| rng.random_range(low..high);
         let actuator = Actuator::new(self.kind, &mut draw);
         let fade = sampled(100.0, 32.0, |t| 0.95 * (1.0 - t / 33.0) * (TAU * 0.25 * t).sin());
-        let mut train = vec![sine("major", 0.2, [0.0, 0.98], 3.0), ("fade", 100.0, fade)];
         let random = |count: u32, draw: &mut dyn FnMut(f64, f64) -> f64| -> Vec<f64> {
             std::iter::once(0.0).chain((0..count).map(|_| draw(-0.9, 0.9))).collect()
         };
-        if self.is_slow {
-            train.push(levels("staircase", &random(8, &mut draw), [0.5, 4.0]));
-            train.push(mix("slow mix", 10.0, 40.0, &mut draw));
-        } else {
-            for (name, hz, size) in [
-                ("1 Hz large", 1.0, 0.95),
-                ("1 Hz small", 1.0, 0.35),
-                ("10 Hz large", 10.0, 0.95),
-                ("10 Hz small", 10.0, 0.35),
-            ] {
-                train.push(sine(name, hz, [0.0, size], if hz > 5.0 { 10.0 } else { 5.0 }));
+        let usual = || vec![sine("major", 0.2, [0.0, 0.98], 3.0), ("fade", 100.0, fade.clone())];
+        let train = match self.runs {
+            Runs::Usual => {
+                let mut train = usual();
+                for (name, hz, size) in [
+                    ("1 Hz large", 1.0, 0.95),
+                    ("1 Hz small", 1.0, 0.35),
+                    ("10 Hz large", 10.0, 0.95),
+                    ("10 Hz small", 10.0, 0.35),
+                ] {
+                    train.push(sine(name, hz, [0.0, size], if hz > 5.0 { 10.0 } else { 5.0 }));
+                }
+                train
             }
-        }
-        let slower = if self.is_slow { 10.0 } else { 1.0 };
+            Runs::Slow => {
+                let mut train = usual();
+                train.push(levels("staircase", &random(8, &mut draw), [0.5, 4.0]));
+                train.push(mix("slow mix", 10.0, 40.0, &mut draw));
+                train
+            }
+            Runs::OneFade => vec![("fade", 100.0, fade)],
+            Runs::OneOfStepsAndSine => {
+                let mut stairs = random(6, &mut draw);
+                stairs.push(0.0);
+                let (name, hz, mut command) = levels("steps and sine", &stairs, [0.5, 3.0]);
+                command.extend(sine("sine", 0.2, [0.0, 0.95], 3.0).2);
+                vec![(name, hz, command)]
+            }
+        };
+        let slower = if self.runs == Runs::Usual { 1.0 } else { 10.0 };
         let (middle, size) = (draw(-0.5, 0.5), draw(0.2, 0.45));
         let held_out = [
             sine("major", 4.0 / slower, [0.0, 0.9], 3.0),

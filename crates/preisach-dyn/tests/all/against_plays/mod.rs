@@ -1,9 +1,10 @@
 //! Identification without options against fifteen lines of non-negative least squares of plays.
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
+#![expect(clippy::print_stdout, reason = "a test says its figures")]
 
 mod benches;
 
-use benches::{BENCHES, Bench, Made};
+use benches::{BENCHES, Bench, Made, ONE_RECORD};
 use nalgebra::{DMatrix, DVector};
 use preisach_dyn::identify::{BenchRecord, Candidates, Settings, compare_models};
 use rayon::prelude::*;
@@ -127,11 +128,10 @@ const NOISE: f64 = 0.01;
 const FIRST_SEED: u64 = 101;
 
 /// Root mean squares over the seeds, by run and over all runs: no more than those of plays, or a tie.
-#[test]
-fn identification_without_options_is_as_good_as_plays_on_every_bench() {
+fn as_good_as_plays(benches: &[Bench]) {
     let mut beaten = Vec::new();
     println!("NRMSE in % of the truth without noise, runs not trained on: identify (plays)");
-    for bench in &BENCHES {
+    for bench in benches {
         let seeds: Vec<u64> = (FIRST_SEED..FIRST_SEED + bench.seeds).collect();
         let found: Vec<_> = seeds.par_iter().map(|seed| contest(bench, *seed)).collect();
         let rms = |who: usize, run: usize| {
@@ -146,7 +146,7 @@ fn identification_without_options_is_as_good_as_plays_on_every_bench() {
         chosen.dedup();
         let share = rms(0, 4) / rms(1, 4);
         println!(
-            "{:13} {} {share:.3} of plays; {}",
+            "{:22} {} {share:.3} of plays; {}",
             bench.name,
             words.collect::<String>(),
             chosen.join("; ")
@@ -159,4 +159,15 @@ fn identification_without_options_is_as_good_as_plays_on_every_bench() {
         }
     }
     assert!(beaten.is_empty(), "{beaten:#?}");
+}
+
+#[test]
+fn identification_without_options_is_as_good_as_plays_on_every_bench() {
+    as_good_as_plays(&BENCHES);
+}
+
+/// One record alone has no other to be left out: blocks in time choose.
+#[test]
+fn a_single_record_chooses_its_model_as_well_as_plays() {
+    as_good_as_plays(&ONE_RECORD);
 }

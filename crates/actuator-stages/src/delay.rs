@@ -1,7 +1,7 @@
 //! The transport delay.
 
-use super::Step;
-use crate::PreisachError;
+use crate::StageError;
+use crate::Step;
 use crate::check::check_within;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
@@ -21,20 +21,21 @@ pub struct Delay {
 }
 
 impl Delay {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
+    pub(crate) fn check(self) -> Result<(), StageError> {
         check_within("delay_s", self.delay_s, 0.0..=1.0)
     }
 }
 
+/// A [`Delay`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct DelayStep {
-    pub(super) delay_s: f64,
-    pub(super) step_s: f64,
+pub struct DelayStep {
+    pub(crate) delay_s: f64,
+    pub(crate) step_s: f64,
 }
 
 /// The samples still under way: how long each came after the one before, and its value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct DelayMemory {
+pub struct DelayMemory {
     samples: VecDeque<(f64, f64)>,
     /// From the oldest sample to the newest, s.
     span_s: f64,

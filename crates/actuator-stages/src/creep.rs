@@ -1,9 +1,9 @@
 //! Creep: the slow part of the response to a step.
 
-use super::Step;
-use super::lag_step::LagStep;
-use crate::PreisachError;
+use crate::StageError;
+use crate::Step;
 use crate::check::{check_not_negative, check_positive, check_that, check_within};
+use crate::lag_step::LagStep;
 use serde::{Deserialize, Serialize};
 
 /// Creep that grows with the logarithm of time.
@@ -50,7 +50,7 @@ impl LogCreep {
         Self { rate_per_decade, from_s: usual_start_s(), to_s: usual_end_s() }
     }
 
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_positive("from_s", self.from_s)?;
         check_positive("to_s", self.to_s)?;
         check_within("rate_per_decade", self.rate_per_decade, 0.0..=1.0)?;
@@ -72,7 +72,7 @@ impl LogCreep {
         places.map(|place| (weight, first_s * 10.0_f64.powf(place * spacing))).collect()
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
+    pub(crate) fn prepared(&self, step_s: f64) -> CreepStep {
         CreepStep::creeping(self.lags(), step_s)
     }
 }
@@ -106,28 +106,31 @@ pub struct KelvinVoigt {
 }
 
 impl KelvinVoigt {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         self.elements.iter().try_for_each(|element| {
             check_not_negative("compliance_ratio", element.compliance_ratio)?;
             check_positive("time_constant_s", element.time_constant_s)
         })
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> CreepStep {
+    pub(crate) fn prepared(&self, step_s: f64) -> CreepStep {
         let lag = |e: &KelvinVoigtElement| (e.compliance_ratio, e.time_constant_s);
         CreepStep::creeping(self.elements.iter().map(lag), step_s)
     }
 }
 
+/// Lags in parallel made ready for one time step: creep, relaxation, a lag alone.
+///
 /// `y = u + sum_i w_i (u + d_i - u_start)`, `d_i` the deviation of lag `i` from its input.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct CreepStep {
+pub struct CreepStep {
     terms: Vec<(f64, LagStep)>,
     total: f64,
 }
 
+/// First and last input of lags in parallel, and how far each lag is from its input.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct CreepMemory {
+pub struct CreepMemory {
     start: f64,
     input: f64,
     deviations: Vec<f64>,
@@ -141,7 +144,7 @@ impl CreepStep {
     }
 
     /// `y = u + sum_i w_i d_i`: lags whose gain at rest is 1.
-    pub(super) fn relaxing(lags: impl IntoIterator<Item = (f64, f64)>, step_s: f64) -> Self {
+    pub(crate) fn relaxing(lags: impl IntoIterator<Item = (f64, f64)>, step_s: f64) -> Self {
         let term = |(weight, tau_s)| (weight, LagStep::new(tau_s, step_s));
         Self { terms: lags.into_iter().map(term).collect(), total: 0.0 }
     }

@@ -1,9 +1,9 @@
 //! What the amplifier and the ceramic do to the voltage: slew, limits, heat, depolarisation.
 
-use super::lag_step::LagStep;
-use super::{Curve, Step};
-use crate::PreisachError;
+use crate::StageError;
 use crate::check::{check_finite, check_not_negative, check_positive, check_that, check_within};
+use crate::lag_step::LagStep;
+use crate::{Curve, Step};
 use serde::{Deserialize, Serialize};
 
 /// An amplifier whose current is limited, into a capacitance: a slew limit.
@@ -20,14 +20,16 @@ pub struct CurrentLimit {
     pub slew_rate_volt_per_s: f64,
 }
 
+/// A [`CurrentLimit`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct CurrentStep {
+pub struct CurrentStep {
     /// Largest change over a step, V.
-    pub(super) most_volt: f64,
+    pub(crate) most_volt: f64,
 }
 
+/// Input and output of a [`CurrentLimit`] at the last sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LimitMemory {
+pub struct LimitMemory {
     input: f64,
     output: f64,
 }
@@ -87,14 +89,17 @@ impl Saturation {
         Self { v_min_volt, v_max_volt, knee_volt: 0.0 }
     }
 
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
-        crate::VoltageRange::new(self.v_min_volt, self.v_max_volt)?;
-        let most = 0.5 * (self.v_max_volt - self.v_min_volt);
+    pub(crate) fn check(&self) -> Result<(), StageError> {
+        let span = self.v_max_volt - self.v_min_volt;
+        let expected =
+            format!("above its lower end {}: the range is empty or not finite", self.v_min_volt);
+        check_that(span.is_finite() && span > 0.0, "end of a range", self.v_max_volt, expected)?;
+        let most = 0.5 * span;
         check_within("knee_volt", self.knee_volt, 0.0..=most)
     }
 
     /// The commands beyond which nothing changes any more, V.
-    pub(crate) fn reached_volt(&self) -> (f64, f64) {
+    pub fn reached_volt(&self) -> (f64, f64) {
         (self.v_min_volt - self.knee_volt, self.v_max_volt + self.knee_volt)
     }
 
@@ -158,13 +163,13 @@ impl DielectricHeating {
         Self { time_constant_s, coefficient_per_k, rise_k_per_volt2_hz: usual_rise() }
     }
 
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_positive("time_constant_s", self.time_constant_s)?;
         check_not_negative("rise_k_per_volt2_hz", self.rise_k_per_volt2_hz)?;
         check_within("coefficient_per_k", self.coefficient_per_k, -1.0..=1.0)
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> HeatStep {
+    pub(crate) fn prepared(&self, step_s: f64) -> HeatStep {
         HeatStep {
             lag: LagStep::new(self.time_constant_s, step_s),
             coefficient_per_k: self.coefficient_per_k,
@@ -173,21 +178,30 @@ impl DielectricHeating {
     }
 }
 
+/// A [`DielectricHeating`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct HeatStep {
+pub struct HeatStep {
     lag: LagStep,
     coefficient_per_k: f64,
     /// Forcing per change over the step and distance from the turn, K/V^2.
     rate_k: f64,
 }
 
+/// Temperature of a [`DielectricHeating`], and the motion of the voltage that heats it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct HeatMemory {
-    pub(crate) temperature_k: f64,
+pub struct HeatMemory {
+    temperature_k: f64,
     voltage: f64,
     turn: f64,
     /// Sign of the last change, 0 before the first.
     direction: f64,
+}
+
+impl HeatMemory {
+    /// Temperature above the start, K.
+    pub fn temperature_k(&self) -> f64 {
+        self.temperature_k
+    }
 }
 
 impl Step for HeatStep {
@@ -275,9 +289,9 @@ impl Depolarisation {
         Self { threshold_volt, loss_per_volt, loss_per_volt_second: 0.0, repoling_volt: None }
     }
 
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         let threshold = self.threshold_volt;
-        check_finite("threshold_volt", [threshold])?;
+        check_finite("threshold_volt", threshold)?;
         check_within("loss_per_volt", self.loss_per_volt, 0.0..=1.0)?;
         check_not_negative("loss_per_volt_second", self.loss_per_volt_second)?;
         self.repoling_volt.map_or(Ok(()), |above| {
@@ -299,20 +313,21 @@ impl Depolarisation {
         std::iter::once(at_start).chain(later).collect()
     }
 
-    pub(super) fn prepared(&self, step_s: f64) -> DepolarisationStep {
+    pub(crate) fn prepared(&self, step_s: f64) -> DepolarisationStep {
         DepolarisationStep { stage: *self, step_s }
     }
 }
 
+/// A [`Depolarisation`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct DepolarisationStep {
+pub struct DepolarisationStep {
     stage: Depolarisation,
     step_s: f64,
 }
 
 /// Shares of the polarisation lost, and the last voltage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct LossMemory {
+pub struct LossMemory {
     at_once: f64,
     with_time: f64,
     voltage: f64,

@@ -1,7 +1,7 @@
 //! One mechanical mode.
 
-use super::Step;
-use crate::PreisachError;
+use crate::StageError;
+use crate::Step;
 use crate::check::{check_positive, check_within};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -24,7 +24,7 @@ pub struct Resonance {
 }
 
 impl Resonance {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_positive("frequency_hz", self.frequency_hz)?;
         check_positive("damping_ratio", self.damping_ratio)?;
         check_within("damping_ratio", self.damping_ratio, 0.0..=100.0)
@@ -65,16 +65,17 @@ impl Resonance {
         2.0 * self.damping_ratio / (TAU * self.frequency_hz)
     }
 
-    pub(crate) fn prepared(&self, step_s: f64) -> ResonanceStep {
+    /// The mode made ready for samples `step_s` apart, `> 0`.
+    pub fn prepared(&self, step_s: f64) -> ResonanceStep {
         let [[place, s], [pull, rate]] = self.free_motion(step_s);
         let (from_place, from_rate) = ([place, pull], [s, rate]);
         ResonanceStep { lead_s: self.lead_s(), step_s, from_place, from_rate }
     }
 }
 
-/// The matrix exponential of the homogeneous motion over a step, by columns.
+/// A [`Resonance`] made ready: the matrix exponential of its free motion over a step, by columns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ResonanceStep {
+pub struct ResonanceStep {
     /// A ramp of the input is followed this much later, s.
     lead_s: f64,
     step_s: f64,
@@ -82,8 +83,9 @@ pub(crate) struct ResonanceStep {
     from_rate: [f64; 2],
 }
 
+/// Motion of a [`Resonance`] at the last sample.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct ResonanceMemory {
+pub struct ResonanceMemory {
     input: f64,
     /// Output less input.
     deviation: f64,

@@ -1,8 +1,8 @@
 //! What the linkage does to the motion: lost motion, dry friction, load.
 
-use super::{Curve, Step};
-use crate::PreisachError;
+use crate::StageError;
 use crate::check::{check_not_negative, check_positive, check_within};
+use crate::{Curve, Step};
 use serde::{Deserialize, Serialize};
 
 /// Lost motion in a joint.
@@ -20,9 +20,10 @@ pub struct Backlash {
     pub width_um: f64,
 }
 
+/// A [`Backlash`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct PlayStep {
-    pub(super) half_width: f64,
+pub struct PlayStep {
+    pub(crate) half_width: f64,
 }
 
 impl Step for PlayStep {
@@ -65,17 +66,22 @@ pub struct CoulombFriction {
 /// Stiffness of a contact before it slips over that of the linkage.
 const CONTACT_STIFFNESS: f64 = 10.0;
 
-/// `de = c (1 - sgn(dy) e / r) dy`, `x = y + e`.
+/// A [`CoulombFriction`] made ready: `de = c (1 - sgn(dy) e / r) dy`, `x = y + e`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FrictionStep {
-    /// Largest stretch, `r`.
-    pub(crate) limit: f64,
+pub struct FrictionStep {
+    /// Largest stretch, `r`, deg.
+    limit: f64,
 }
 
 impl FrictionStep {
-    /// The stretch after a monotone change of the output.
+    /// Friction whose stretch is at most `limit_deg`, in degrees of flap angle.
+    pub fn new(limit_deg: f64) -> Self {
+        Self { limit: limit_deg }
+    }
+
+    /// The stretch after a monotone change of the output, deg.
     #[inline]
-    pub(crate) fn stretched(self, stretch: f64, output_change: f64) -> f64 {
+    pub fn stretched(self, stretch: f64, output_change: f64) -> f64 {
         settled_by_way(stretch, self.limit, output_change, self.limit / CONTACT_STIFFNESS)
     }
 
@@ -133,7 +139,7 @@ const SHORT_WAY: f64 = 3.0;
 
 /// The memory of a stage that settles with the way.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct WayMemory {
+pub struct WayMemory {
     input: f64,
     /// Stretch.
     #[serde(rename = "stretch")]
@@ -196,17 +202,17 @@ pub struct Accommodation {
 }
 
 impl Accommodation {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
+    pub(crate) fn check(self) -> Result<(), StageError> {
         check_positive("travel_um", self.travel_um)?;
         check_within("share of the accommodation", self.share, 0.0..=LARGEST_SHARE)
     }
 }
 
-/// `de = (1 - sgn(dx) e / travel) dx`, `y = x - share e`.
+/// An [`Accommodation`] made ready: `de = (1 - sgn(dx) e / travel) dx`, `y = x - share e`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct AccommodationStep {
-    pub(super) travel: f64,
-    pub(super) share: f64,
+pub struct AccommodationStep {
+    pub(crate) travel: f64,
+    pub(crate) share: f64,
 }
 
 impl Step for AccommodationStep {
@@ -239,7 +245,6 @@ const LARGEST_SHARE: f64 = 0.5;
 /// delta = ( delta_free - deg_per_um F / k_a ) / ( 1 + stiffness_ratio ),   stiffness_ratio = k_load / k_a
 /// ```
 /// `F` is the external load along the actuator, positive against a growing displacement; see
-/// [`crate::ActuatorModel::simulate_drive`] and
 /// [`crate::Calibration::load_newton`] for a hinge moment. The load spring is unstrained at zero
 /// flap angle. `stiffness_ratio = 0` without a load is the identity.
 ///
@@ -256,12 +261,12 @@ pub struct LoadStiffness {
 }
 
 impl LoadStiffness {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_not_negative("stiffness_ratio", self.stiffness_ratio)?;
         check_not_negative("compliance_um_per_newton", self.compliance_um_per_newton)
     }
 
-    pub(super) fn prepared(&self, deg_per_um: f64) -> LoadStep {
+    pub(crate) fn prepared(&self, deg_per_um: f64) -> LoadStep {
         LoadStep {
             share: 1.0 / (1.0 + self.stiffness_ratio),
             deg_per_newton: deg_per_um * self.compliance_um_per_newton,
@@ -269,8 +274,9 @@ impl LoadStiffness {
     }
 }
 
+/// A [`LoadStiffness`] made ready.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LoadStep {
+pub struct LoadStep {
     share: f64,
     deg_per_newton: f64,
 }
@@ -278,7 +284,7 @@ pub(crate) struct LoadStep {
 impl LoadStep {
     /// The flap angle, deg, under an external load, N.
     #[inline]
-    pub(crate) fn under(&self, free_deg: f64, load_newton: f64) -> f64 {
+    pub fn under(&self, free_deg: f64, load_newton: f64) -> f64 {
         (free_deg - self.deg_per_newton * load_newton) * self.share
     }
 }

@@ -1,42 +1,18 @@
-//! The stages around the hysteresis law: amplifier before it, linkage behind it, sensor on the
-//! bench.
-//!
-//! Every stage takes one sample of a signal to the next. Its input is taken as straight between two
-//! samples; linear stages are then exact at the samples whatever the step (first-order hold, the
-//! matrix exponential in closed form). Volt in the amplifier, degrees of flap angle behind the law;
-//! lengths in um are turned into degrees by the actuator's calibration.
-//!
-//! Source of the first-order hold: G. F. Franklin, J. D. Powell, M. L. Workman, *Digital Control of
-//! Dynamic Systems* (1998), section 6.3.
+//! Any stage: as an actuator file holds it, one enum each for amplifier, linkage and sensor, and made ready for one time
+//! step.
 
-mod amplifier;
-mod creep;
-mod delay;
-mod lag;
-mod lag_step;
-mod linkage;
-mod relaxation;
-mod resonance;
-mod sensor;
-
-pub use amplifier::{CurrentLimit, Depolarisation, DielectricHeating, Saturation};
-pub use creep::{KelvinVoigt, KelvinVoigtElement, LogCreep};
-pub use delay::Delay;
-pub use lag::Lag;
-pub use linkage::{Accommodation, Backlash, CoulombFriction, LoadStiffness};
-pub use relaxation::{Relaxation, RelaxationElement};
-pub use resonance::Resonance;
-pub use sensor::{MainsHum, Nonlinearity, NonlinearityShape, Quantisation};
-
+use crate::amplifier::{CurrentStep, DepolarisationStep, HeatStep};
 use crate::check::{check_not_negative, check_positive};
-use crate::{Calibration, PreisachError};
-use amplifier::{CurrentStep, DepolarisationStep, HeatStep};
-use creep::CreepStep;
-use delay::DelayStep;
-pub(crate) use linkage::FrictionStep;
-use linkage::{AccommodationStep, LoadStep, PlayStep};
-use resonance::ResonanceStep;
-use sensor::{HumStep, NonlinearityStep, QuantisationStep};
+use crate::creep::CreepStep;
+use crate::delay::DelayStep;
+use crate::linkage::{AccommodationStep, LoadStep, PlayStep};
+use crate::resonance::ResonanceStep;
+use crate::sensor::{HumStep, NonlinearityStep, QuantisationStep};
+use crate::{
+    Accommodation, Backlash, Calibration, CoulombFriction, CurrentLimit, Delay, Depolarisation,
+    DielectricHeating, FrictionStep, KelvinVoigt, Lag, LoadStiffness, LogCreep, MainsHum,
+    Nonlinearity, Quantisation, Relaxation, Resonance, Saturation, StageError, Step,
+};
 use serde::{Deserialize, Serialize};
 
 /// A stage between the command and the terminals of the actuator. Signal: V.
@@ -95,82 +71,20 @@ pub enum SensorStage {
     MainsHum(MainsHum),
 }
 
-/// A stage made ready for one time step.
-pub(crate) trait Step {
-    /// What the stage remembers.
-    type Memory;
-
-    /// The stage settled at an input, and its output there.
-    fn start(&self, input: f64) -> (Self::Memory, f64);
-
-    /// One sample on.
-    fn advance(&self, memory: &mut Self::Memory, input: f64) -> f64;
-
-    /// A whole signal through the stage, settled at its first sample and without load: the same
-    /// numbers as sample by sample.
-    fn pass(&self, signal: &mut [f64]) {
-        let Some((first, rest)) = signal.split_first_mut() else {
-            return;
-        };
-        let (mut memory, output) = self.start(*first);
-        *first = output;
-        for value in rest {
-            *value = self.advance(&mut memory, *value);
-        }
-    }
-
-    /// Whether a memory of this kind of stage is one of this stage.
-    fn owns(&self, _memory: &Self::Memory) -> bool {
-        true
-    }
-
-    /// Factor on the law's output that the present state means.
-    fn gain(&self, _memory: &Self::Memory) -> f64 {
-        1.0
-    }
-
-    /// Takes slow states to where a periodic input will leave them.
-    ///
-    /// ```text
-    /// x(T) = e x(0) + b   =>   x* = (x(T) - e x(0)) / (1 - e),   e = exp(-T / tau)
-    /// ```
-    /// `e = exp(-way travelled / way)` where a state settles with the way.
-    fn settle(&self, _before: &Self::Memory, _now: &mut Self::Memory, _period_s: f64) {}
-}
-
-/// The stages that have no memory: an output for every input.
-pub(crate) trait Curve {
-    /// The output at an input.
-    fn value(&self, input: f64) -> f64;
-}
-
-impl<C: Curve> Step for C {
-    type Memory = ();
-
-    fn start(&self, input: f64) -> ((), f64) {
-        ((), self.value(input))
-    }
-
-    #[inline]
-    fn advance(&self, (): &mut (), input: f64) -> f64 {
-        self.value(input)
-    }
-}
-
 /// The kinds of stages: from a list of names and steps the enum of any step, the enum of any memory,
 /// and [`Step`] of the one with the other.
 macro_rules! kinds {
     ($($kind:ident($step:ty)),* $(,)?) => {
         /// Any stage made ready for one time step.
         #[derive(Debug, Clone, PartialEq)]
-        pub(crate) enum StageStep {
-            $($kind($step)),*
+        pub enum StageStep {
+            $(#[doc = concat!("[`", stringify!($step), "`].")] $kind($step)),*
         }
 
         /// What any stage remembers.
         #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-        pub(crate) enum StageMemory {
-            $($kind(<$step as Step>::Memory)),*
+        pub enum StageMemory {
+            $(#[doc = concat!("What [`", stringify!($step), "`] remembers.")] $kind(<$step as Step>::Memory)),*
         }
 
         impl Step for StageStep {
@@ -246,7 +160,7 @@ kinds! {
 
 impl AmplifierStage {
     /// Name of the stage, as in an actuator file, and what is refused of its parameters.
-    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
+    pub fn checked(&self) -> (&'static str, Result<(), StageError>) {
         match self {
             Self::Lag(stage) => ("Lag", stage.check()),
             Self::CurrentLimit(stage) => {
@@ -260,7 +174,8 @@ impl AmplifierStage {
         }
     }
 
-    pub(crate) fn prepared(&self, step_s: f64) -> StageStep {
+    /// The stage made ready for samples `step_s` apart, `> 0`.
+    pub fn prepared(&self, step_s: f64) -> StageStep {
         match self {
             Self::Lag(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::CurrentLimit(stage) => StageStep::CurrentLimit(CurrentStep {
@@ -276,7 +191,7 @@ impl AmplifierStage {
 
 impl LinkageStage {
     /// Name of the stage, as in an actuator file, and what is refused of its parameters.
-    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
+    pub fn checked(&self) -> (&'static str, Result<(), StageError>) {
         match self {
             Self::LogCreep(stage) => ("LogCreep", stage.check()),
             Self::KelvinVoigt(stage) => ("KelvinVoigt", stage.check()),
@@ -291,7 +206,8 @@ impl LinkageStage {
         }
     }
 
-    pub(crate) fn prepared(&self, step_s: f64, calibration: &Calibration) -> StageStep {
+    /// The stage made ready for samples `step_s` apart, `> 0`; lengths in um become degrees by the calibration.
+    pub fn prepared(&self, step_s: f64, calibration: &Calibration) -> StageStep {
         let deg = calibration.deg_per_um.abs();
         match self {
             Self::LogCreep(stage) => StageStep::Creep(stage.prepared(step_s)),
@@ -306,7 +222,7 @@ impl LinkageStage {
                 StageStep::Play(PlayStep { half_width: 0.5 * stage.width_um * deg })
             }
             Self::CoulombFriction(stage) => {
-                StageStep::Friction(FrictionStep { limit: 0.5 * stage.width_um * deg })
+                StageStep::Friction(FrictionStep::new(0.5 * stage.width_um * deg))
             }
             Self::LoadStiffness(stage) => StageStep::Load(stage.prepared(calibration.deg_per_um)),
         }
@@ -315,7 +231,7 @@ impl LinkageStage {
 
 impl SensorStage {
     /// Name of the stage, as in an actuator file, and what is refused of its parameters.
-    pub(crate) fn checked(&self) -> (&'static str, Result<(), PreisachError>) {
+    pub fn checked(&self) -> (&'static str, Result<(), StageError>) {
         match self {
             Self::Filter(stage) => ("Filter", stage.check()),
             Self::Nonlinearity(stage) => ("Nonlinearity", stage.check()),
@@ -327,7 +243,8 @@ impl SensorStage {
         }
     }
 
-    pub(crate) fn prepared(&self, step_s: f64, calibration: &Calibration) -> StageStep {
+    /// The stage made ready for samples `step_s` apart, `> 0`; lengths in um become degrees by the calibration.
+    pub fn prepared(&self, step_s: f64, calibration: &Calibration) -> StageStep {
         match self {
             Self::Filter(stage) => StageStep::Creep(stage.prepared(step_s)),
             Self::Nonlinearity(stage) => StageStep::Nonlinearity(stage.prepared(calibration)),

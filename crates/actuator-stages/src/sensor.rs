@@ -1,8 +1,8 @@
 //! What the sensor adds: an error of its characteristic, rounding, hum.
 
-use super::{Curve, Step};
 use crate::check::{check_finite, check_not_negative, check_positive, check_within};
-use crate::{Calibration, PreisachError};
+use crate::{Calibration, StageError};
+use crate::{Curve, Step};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -59,15 +59,15 @@ pub struct Nonlinearity {
 }
 
 impl Nonlinearity {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_positive("half_range_um", self.half_range_um)?;
         if let NonlinearityShape::CubicAbout { straight } = self.shape {
             check_within("straight", straight, 0.0..=1.5)?;
         }
-        check_finite("amplitude_um", [self.amplitude_um])
+        check_finite("amplitude_um", self.amplitude_um)
     }
 
-    pub(super) fn prepared(&self, calibration: &Calibration) -> NonlinearityStep {
+    pub(crate) fn prepared(&self, calibration: &Calibration) -> NonlinearityStep {
         NonlinearityStep {
             amplitude_deg: self.amplitude_um * calibration.deg_per_um,
             per_deg: 1.0 / (self.half_range_um * calibration.deg_per_um),
@@ -76,8 +76,9 @@ impl Nonlinearity {
     }
 }
 
+/// A [`Nonlinearity`] made ready.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NonlinearityStep {
+pub struct NonlinearityStep {
     amplitude_deg: f64,
     per_deg: f64,
     coefficients: [f64; 4],
@@ -105,9 +106,10 @@ pub struct Quantisation {
     pub step_um: f64,
 }
 
+/// A [`Quantisation`] made ready.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct QuantisationStep {
-    pub(super) step_deg: f64,
+pub struct QuantisationStep {
+    pub(crate) step_deg: f64,
 }
 
 impl Curve for QuantisationStep {
@@ -136,13 +138,13 @@ pub struct MainsHum {
 }
 
 impl MainsHum {
-    pub(super) fn check(&self) -> Result<(), PreisachError> {
+    pub(crate) fn check(&self) -> Result<(), StageError> {
         check_not_negative("amplitude_um", self.amplitude_um)?;
         check_positive("frequency_hz", self.frequency_hz)?;
-        check_finite("phase_rad", [self.phase_rad])
+        check_finite("phase_rad", self.phase_rad)
     }
 
-    pub(super) fn prepared(&self, step_s: f64, calibration: &Calibration) -> HumStep {
+    pub(crate) fn prepared(&self, step_s: f64, calibration: &Calibration) -> HumStep {
         HumStep {
             amplitude_deg: self.amplitude_um * calibration.deg_per_um,
             turns_per_step: self.frequency_hz * step_s,
@@ -151,8 +153,9 @@ impl MainsHum {
     }
 }
 
+/// A [`MainsHum`] made ready for one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct HumStep {
+pub struct HumStep {
     amplitude_deg: f64,
     turns_per_step: f64,
     first_turns: f64,

@@ -1,8 +1,8 @@
 //! The first-order lag.
 
-use super::creep::CreepStep;
-use crate::PreisachError;
+use crate::StageError;
 use crate::check::check_not_negative;
+use crate::creep::CreepStep;
 use serde::{Deserialize, Serialize};
 
 /// A first-order lag: an amplifier's output resistance into a capacitance, or a sensor's filter.
@@ -20,11 +20,11 @@ pub struct Lag {
 }
 
 impl Lag {
-    pub(super) fn check(self) -> Result<(), PreisachError> {
+    pub(crate) fn check(self) -> Result<(), StageError> {
         check_not_negative("tau_s", self.tau_s)
     }
 
-    pub(super) fn prepared(self, step_s: f64) -> CreepStep {
+    pub(crate) fn prepared(self, step_s: f64) -> CreepStep {
         CreepStep::relaxing([(1.0, self.tau_s)], step_s)
     }
 }

@@ -1,0 +1,179 @@
+//! What is left out of a fit in turn, and the error that noise alone leaves there.
+
+use crate::check::extremes;
+use crate::identify::fit::compare;
+use crate::identify::fit::training::Training;
+use crate::identify::records::noise::Fine;
+use crate::identify::records::prepared::Prepared;
+use crate::{ActuatorModel, PreisachError};
+use rotor_base::mean_square;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// Frequencies and amplitudes that differ by less than this share are one.
+const SAME: f64 = 0.05;
+/// Blocks in time of a single record.
+const BLOCKS: usize = 8;
+/// Share of the swing by which the commands of a block may leave those of the rest.
+const BEYOND: f64 = 0.02;
+/// Fewest samples of such a block.
+const FEWEST_SAMPLES: usize = 16;
+
+/// What a comparison of models leaves out of the fits in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LeftOut {
+    /// Nothing: there are too few training records, and more than one.
+    Nothing,
+    /// Training records: those of one frequency, of one amplitude, or single ones.
+    Records,
+    /// Blocks in time of the only training record.
+    Blocks,
+}
+
+impl LeftOut {
+    /// What some folds are of.
+    pub(crate) fn of(folds: &[Fold]) -> Self {
+        match folds.first() {
+            None => Self::Nothing,
+            Some(Fold::Records(_)) => Self::Records,
+            Some(Fold::Block(_)) => Self::Blocks,
+        }
+    }
+}
+
+/// Which folds there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Folds {
+    /// Frequencies and amplitudes of the fast records.
+    Conditions,
+    /// Slow records too.
+    All,
+}
+
+/// What is left out of one fit.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Fold {
+    /// Records, as places in the slow and the fast ones, one after another.
+    Records(Vec<usize>),
+    /// Samples of the only record.
+    Block(Range<usize>),
+}
+
+impl Fold {
+    /// Mean square of the NRMSE of what is left out, by the model fitted to the rest.
+    pub(crate) fn square_error(
+        &self,
+        training: &Training<'_>,
+        fit: impl Fn(&Training<'_>) -> Result<ActuatorModel, PreisachError>,
+    ) -> Result<f64, PreisachError> {
+        let all = training.all();
+        match self {
+            Self::Records(places) => {
+                let model = fit(&training.without(places))?;
+                let errors =
+                    places.iter().map(|&place| compare::training_nrmse(&model, all[place]));
+                Ok(mean_square(&errors.collect::<Result<Vec<_>, _>>()?))
+            }
+            Self::Block(block) => {
+                let rest = [all[0].clone().without(block.clone())];
+                let rest = Training::of(&rest, training.grid, training.settings)?;
+                Ok(compare::nrmse_over(&fit(&rest)?, all[0], block.clone())?.powi(2))
+            }
+        }
+    }
+
+    /// Mean square of the noise of what is left out over its spread.
+    fn square_noise(&self, all: &[&Prepared], usual_deg: f64) -> f64 {
+        let square = |record: &Prepared| {
+            (record.noise.map_or(usual_deg, |noise| noise.std_deg) / record.spread_deg).powi(2)
+        };
+        match self {
+            Self::Records(places) => {
+                places.iter().map(|&place| square(all[place])).sum::<f64>() / places.len() as f64
+            }
+            Self::Block(_) => square(all[0]),
+        }
+    }
+}
+
+/// The folds of some training records; none where there are too few.
+pub(crate) fn of(training: &Training, which: Folds) -> Vec<Fold> {
+    let Training { slow, fast, .. } = training;
+    if let ([only], []) = (&slow[..], &fast[..]) {
+        return blocks(only);
+    }
+    let mut folds = conditions(fast, slow.len());
+    let fewest = if fast.is_empty() { 2 } else { 3 };
+    if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
+        folds.extend((0..slow.len()).map(|place| vec![place]));
+    }
+    folds.into_iter().map(Fold::Records).collect()
+}
+
+/// The error of folds that a model without misfit has: the noise over the spread. Of a record whose cycles do not repeat it
+/// is what records at rest show, else that of the others; of a single record what is rough from sample to sample. 0 where
+/// nothing shows it.
+pub(crate) fn noise(training: &Training, folds: &[Fold], rest_noise_deg: Option<f64>) -> f64 {
+    let all = training.all();
+    let known: Vec<f64> = all.iter().filter_map(|r| r.noise.map(|noise| noise.std_deg)).collect();
+    let of_others = (!known.is_empty()).then(|| mean_square(&known).sqrt());
+    let of_one = || {
+        let [only] = &all[..] else { return 0.0 };
+        Fine::of(&only.record.output_deg[only.record.trained_samples()]).rms_deg()
+    };
+    let usual_deg = rest_noise_deg.or(of_others).unwrap_or_else(of_one);
+    let squares = folds.iter().map(|fold| fold.square_noise(&all, usual_deg));
+    (squares.sum::<f64>() / folds.len().max(1) as f64).sqrt()
+}
+
+/// Blocks in time of the only record, of equal length. One whose commands go beyond those of the rest says how a model is
+/// beyond what trained it, which is not asked: it is none.
+fn blocks(record: &Prepared) -> Vec<Fold> {
+    let trained = record.record.trained_samples();
+    if trained.len() < BLOCKS * FEWEST_SAMPLES {
+        return Vec::new();
+    }
+    let end = |k: usize| trained.start + k * trained.len() / BLOCKS;
+    let all: Vec<Range<usize>> = (0..BLOCKS).map(|k| end(k)..end(k + 1)).collect();
+    let volts = &record.record.voltage_volt;
+    let swings: Vec<[f64; 2]> =
+        all.iter().map(|block| extremes(volts[block.clone()].iter().copied())).collect();
+    let is_within = |k: usize| {
+        let others = || (0..BLOCKS).filter(move |other| *other != k);
+        let [low, _] = extremes(others().map(|other| swings[other][0]));
+        let [_, high] = extremes(others().map(|other| swings[other][1]));
+        let beyond = BEYOND * (high - low);
+        swings[k][0] >= low - beyond && swings[k][1] <= high + beyond
+    };
+    let within = all.into_iter().enumerate().filter(|(k, _)| is_within(*k));
+    within.map(|(_, block)| Fold::Block(block)).collect()
+}
+
+/// What is left out of the fast records in turn, as places from `first` on: all records of one
+/// frequency, and all of one amplitude, because a model is used at frequencies and amplitudes the bench
+/// did not run. Single records where there is only one frequency and one amplitude.
+fn conditions(fast: &[&Prepared], first: usize) -> Vec<Vec<usize>> {
+    let groups = |value: &dyn Fn(&Prepared) -> f64| {
+        let mut groups: Vec<(f64, Vec<usize>)> = Vec::new();
+        for (place, record) in fast.iter().enumerate() {
+            let own = value(record);
+            match groups.iter_mut().find(|(v, _)| (own / *v - 1.0).abs() <= SAME) {
+                Some((_, members)) => members.push(first + place),
+                None => groups.push((own, vec![first + place])),
+            }
+        }
+        let members: Vec<Vec<usize>> = groups.into_iter().map(|(_, members)| members).collect();
+        if members.len() < 2 { Vec::new() } else { members }
+    };
+    let mut folds = groups(&|r| r.drive.strongest_hz());
+    for group in groups(&|r| r.drive.amplitude_volt) {
+        if !folds.contains(&group) {
+            folds.push(group);
+        }
+    }
+    if folds.is_empty() && fast.len() >= 2 {
+        folds = (0..fast.len()).map(|place| vec![first + place]).collect();
+    }
+    folds
+}
