@@ -19,7 +19,7 @@ pub enum PickReason {
     OnlyFit,
     /// Cross-validation over the training runs chose it.
     CrossValidation,
-    /// Blocks in time of the only training run, left out of the fit in turn, chose it.
+    /// Blocks in time of the only or the largest training run, left out of the fit in turn, chose it.
     BlocksInTime,
     /// Too few training runs to leave one out: there is nothing to choose by.
     NothingToChooseBy,
