@@ -65,6 +65,7 @@ impl BenchIdentification {
         of_data
             .filter(|finding| !matches!(finding, Finding::NotDescribed { .. }))
             .chain(not_described)
+            .chain(self.better_held_out())
             .map(|finding| FindingLine {
                 severity: finding.severity(),
                 message: said(subject, &finding, self.settings.deg_per_um),
