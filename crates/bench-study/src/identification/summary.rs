@@ -66,6 +66,7 @@ impl BenchIdentification {
             .filter(|finding| !matches!(finding, Finding::NotDescribed { .. }))
             .chain(not_described)
             .chain(self.better_held_out())
+            .chain(self.levels_differ().unwrap_or_default())
             .map(|finding| FindingLine {
                 severity: finding.severity(),
                 message: said(subject, &finding, self.settings.deg_per_um),

@@ -147,6 +147,13 @@ pub enum Finding {
         /// The same of the model chosen, percent.
         chosen_percent: f64,
     },
+    /// Much of what the model leaves are levels that differ between records: they did not begin at rest with one history.
+    LevelsDiffer {
+        /// What the model leaves over the noise of repeated cycles.
+        noise_times: f64,
+        /// Difference of the levels over the largest range of an output, percent.
+        level_percent: f64,
+    },
 }
 
 impl Finding {
@@ -265,6 +272,9 @@ impl Finding {
             Self::BetterHeldOut { model, nrmse_percent, chosen_percent } => {
                 better_held_out(model, *nrmse_percent, *chosen_percent)
             }
+            Self::LevelsDiffer { noise_times, level_percent } => {
+                levels_differ(*noise_times, *level_percent)
+            }
         }
     }
 }
@@ -290,6 +300,16 @@ fn better_held_out(
             "held-out runs, which take no part in the choice, are far better foretold by {model}: NRMSE {nrmse_percent:.2} % rms against {chosen_percent:.2} %"
         ),
         "take that model if they are what it is for, or let more runs train",
+    )
+}
+
+fn levels_differ(noise_times: f64, level_percent: f64) -> (Severity, String, &'static str) {
+    (
+        Severity::Limits,
+        format!(
+            "what the model leaves of the training runs is {noise_times:.0} times their noise, much of it levels that differ between runs by {level_percent:.1} % of the output's range: each run began from another history"
+        ),
+        "begin every record at rest after the same history, such as cycles that fade, or record the run-up to it too",
     )
 }
 
