@@ -44,7 +44,9 @@ const SINE: f64 = 0.65;
 
 impl Glance {
     /// A record with its judged samples.
-    pub fn of(record: &BenchRecord) -> Self {
+    pub fn of(given: &BenchRecord) -> Self {
+        let without_spikes = given.without_spikes();
+        let record = without_spikes.as_ref().map_or(given, |(record, _)| record);
         let drive = record.drive();
         let samples = record.judged_samples();
         let command = &record.voltage_volt[samples.clone()];
@@ -72,7 +74,11 @@ impl Glance {
             duration_s: samples.len() as f64 * step_s,
             output: limits(&record.output_deg[samples]),
             is_butterfly: is_butterfly(record, &drive),
-            findings: record.suspicions(is_slow),
+            findings: record
+                .suspicions(is_slow)
+                .into_iter()
+                .chain(without_spikes.iter().flat_map(|(_, spikes)| spikes.clone()))
+                .collect(),
         }
     }
 
@@ -194,6 +200,25 @@ mod tests {
             |t| 70.0 + 60.0 * phase(t).sin(),
             |t| 100.0 + gain * 60.0 * (phase(t) - lag).sin(),
         )
+    }
+
+    /// A recorder writes -9999 where it has no sample: they are told, and the shape is that of the other samples.
+    #[test]
+    fn numbers_that_stand_for_none_are_spikes() {
+        let whole = wave(2.29);
+        let mut with_gaps = whole.clone();
+        for sample in with_gaps.output_deg.iter_mut().skip(150).step_by(97) {
+            *sample = -9999.0;
+        }
+        let (seen, of_whole) = (Glance::of(&with_gaps), Glance::of(&whole));
+        assert!(!seen.is_butterfly, "{seen:?}");
+        assert!((seen.slope.unwrap() - of_whole.slope.unwrap()).abs() < 1e-3, "{seen:?}");
+        let spikes = seen.findings.iter().find_map(|finding| match finding {
+            Finding::Spikes { samples, value, .. } => Some((*samples, *value)),
+            _ => None,
+        });
+        let written = with_gaps.output_deg.iter().filter(|value| **value < -9000.0).count();
+        assert_eq!(spikes, Some((written, -9999.0)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::beside::{compared, glances};
 use crate::glance::Glance;
 use measured_data::import::{ImportResult, ImportedRun};
 use measured_data::{Folder, read_dataset, significant};
-use preisach_dyn::identify::Severity;
+use preisach_dyn::identify::{Finding, Severity};
 use report_page::{Sheet, counted, table};
 use serde::Serialize;
 use std::ops::Deref;
@@ -38,7 +38,10 @@ impl From<ImportResult> for ImportReport {
             return Self { import, glances: Vec::new(), lines: Vec::new() };
         };
         let suspect = glances.iter().flat_map(|glance| &glance.findings);
-        let suspect = suspect.filter(|finding| finding.severity() == Severity::Suspect);
+        let is_told = |finding: &&Finding| {
+            finding.severity() == Severity::Suspect || matches!(finding, Finding::Spikes { .. })
+        };
+        let suspect = suspect.filter(is_told);
         let said = |finding| format!("{}; {}", subject.finding(finding), subject.remedy(finding));
         import.warnings.extend(suspect.map(said));
         import.warnings.extend(compared(&glances, subject));

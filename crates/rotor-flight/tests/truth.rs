@@ -228,9 +228,9 @@ fn marched(
 const SETTLING: [f64; 2] = [0.25, 0.05];
 
 /// The same against the nonlinear rotor marched in time, in every cycle: the loads of each revolution of the window and `J` of
-/// their mean, which closes the loop. Loads are those of the flight to 2 % of `J0` as squares throughout. `J` is in every cycle but
-/// those whose control has changed by more than a quarter: blades still ring from it. Through a hysteresis for each harmonic, with
-/// the flaps of the cycle before, or without one of their harmonics, it is not.
+/// their mean, which closes the loop. Loads of a window are those of the flight to 2 % of `J0` as squares throughout, those of a
+/// revolution to 3 %. `J` is in every cycle but those whose control has changed by more than a quarter: blades still ring from it.
+/// Through a hysteresis for each harmonic, with the flaps of the cycle before, or without one of their harmonics, it is not.
 #[test]
 fn loads_in_time_are_those_of_the_rotor_marched_in_time() {
     let (path, each) = all_flown();

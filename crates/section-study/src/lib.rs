@@ -8,8 +8,10 @@
 //! | driven | what histories of incidence and flap angle make | `history` |
 
 mod history;
+mod polar;
 
 pub use history::{DrivenQuestion, LoopQuestion, driven_history, loop_history, transient_history};
+pub use polar::{PolarQuestion, polar};
 
 use flap_aero::{
     AeroError, AttachedFlowModel, FlapChord, FlapEffectiveness, KNOWN_ERROR_BANDS, Mach, Mode,

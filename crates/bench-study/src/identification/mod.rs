@@ -251,6 +251,13 @@ fn identified(
     if records.is_empty() && !rests.is_empty() {
         return Err(heading.only_rests(&rests).into());
     }
+    let mut spikes = Vec::new();
+    for record in &mut records {
+        if let Some((mended, found)) = record.without_spikes() {
+            spikes.extend(found);
+            *record = mended;
+        }
+    }
     let mut switched_on = Vec::new();
     // 0 V is where an amplifier is switched on; of other channels nothing is known
     for record in records.iter_mut().filter(|_| heading.channels.is_none()) {
@@ -272,7 +279,7 @@ fn identified(
     let (identification, comparison) = rayon::join(|| identify(&records, &settings), table);
     let mut identification = identification.map_err(|e| heading.failed(e))?;
     let findings = &mut identification.summary.findings;
-    findings.extend(rests.iter().map(Finding::of_rest).chain(switched_on));
+    findings.extend(rests.iter().map(Finding::of_rest).chain(spikes).chain(switched_on));
     let comparison = comparison.map_err(|source| heading.failed(source))?;
     let explained = |table: &ModelComparison| {
         let error = table.best().and_then(|row| table.error_over(row, RecordUse::Train));

@@ -62,12 +62,33 @@ fn unitless(named: &[(usize, Channel)], left_out: &[String]) -> Fault {
     let plain = |name: &&String| !name.is_empty() && !name.contains([',', '=', '[', '"']);
     let sources = left_out.iter().filter(plain);
     let kept = named.iter().map(|(i, c)| format!("{}=#{}", c.label(), i + 1));
-    let said = taken.zip(sources).map(|(own, source)| format!("{own}={source}"));
+    let mut rate = "";
+    let said = taken.zip(sources).filter_map(|(own, source)| match own {
+        "time_s" if counts_samples(source) => {
+            rate = " --sampling-hz RATE, for stamps without a unit are no seconds";
+            None
+        }
+        "displacement_um" if is_told_in_volt(source) => Some(format!("sensor_V={source}")),
+        _ => Some(format!("{own}={source}")),
+    });
     let example = kept.chain(said).take(3).collect::<Vec<_>>().join(",");
     Fault::Other(format!(
-        "the column `{first}` has no known unit; say which column is which, in its unit: --columns '{example}'; units are {}",
+        "the column `{first}` has no known unit; say which column is which, in its unit: --columns '{example}'{rate}; units are {}",
         UNITS.map(|unit| unit.symbol).join(", ")
     ))
+}
+
+/// Whether the name of a column is that of a voltage of an instrument, such as `CH2V`, `Ampl` or `Volts`.
+fn is_told_in_volt(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    let is_channel = name.starts_with("ch") && name.ends_with('v');
+    is_channel || ["volt", "ampl", "auxin"].iter().any(|part| name.contains(part))
+}
+
+/// Whether the name of a column is that of a counter of ticks or samples.
+fn counts_samples(name: &str) -> bool {
+    let name = name.trim().to_lowercase();
+    ["stamp", "tick", "clock", "index", "sample", "count"].iter().any(|part| name.contains(part))
 }
 
 /// Names the columns of a source of `count` columns with the names it gives itself, if any.

@@ -224,7 +224,7 @@ pub enum Fault {
     },
     /// The sampling is not uniform.
     #[error(
-        "the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; import with --split, which parts the record at gaps, or resample it"
+        "the time step is {step_s} s, the record's is {usual_s} s, expected uniform sampling; at a gap import with --split, which parts the record there; where the stamps scatter and the sampling does not, leave them out: --columns -,command_V,displacement_um --sampling-hz HZ"
     )]
     TimeStepUneven {
         /// The step, s.

@@ -145,7 +145,7 @@ impl<'a> TextTable<&'a [u8]> {
             _ => return Ok(table),
         };
         let message = format!(
-            "the fields are separated by {separator}, expected commas; `hhc import FILE -o DIR` reads such tables and writes the record as it should be"
+            "the fields are separated by {separator}, expected commas and decimal points; write it so, as `hhc import FILE -o DIR` does with a record that has command and displacement"
         );
         Err(Problem::new(table.header_place(), Fault::Other(message)))
     }

@@ -134,7 +134,7 @@ fn wrong(recording: &Recording, truth: &[Vec<f64>], out: &Path) -> Option<String
 }
 
 /// The option that a message names, as it stands there.
-fn printed(message: &str) -> String {
+fn printed(message: &str, rate_hz: f64) -> String {
     let options = ["--columns", "--sampling-hz", "--split"].into_iter();
     let (at, option) = options.filter_map(|o| Some((message.find(o)?, o))).min().unwrap();
     let rest = message[at + option.len()..].trim_start();
@@ -142,10 +142,14 @@ fn printed(message: &str) -> String {
         Some(rest) => rest.split('\'').next().unwrap(),
         None => rest.split([' ', ';', '\n']).next().unwrap(),
     };
+    // the rate is the user's to know
+    let rate = format!("--sampling-hz {rate_hz}");
     match option {
+        "--columns" if message.contains("--sampling-hz RATE") => {
+            format!("--columns '{value}' {rate}")
+        }
         "--columns" => format!("--columns '{value}'"),
-        // the rate is the user's to know
-        "--sampling-hz" => format!("{option} 200"),
+        "--sampling-hz" => rate,
         _ => option.to_owned(),
     }
 }
@@ -188,12 +192,16 @@ fn tried(of: &Path) -> (usize, usize, Vec<String>) {
             }
             (Err(said), needs) => {
                 helped += 1;
-                let literal = printed(&said);
-                let again = imported(recording, &literal, &folder.path().join("literal"));
-                let _ = std::fs::remove_dir_all(folder.path().join("literal"));
-                if let Err(more) = again {
-                    flaws.push(format!("{name}: {literal} does not help: {more}"));
+                let literal = printed(&said, 1.0 / recording.step_s);
+                let place = folder.path().join("literal");
+                match imported(recording, &literal, &place) {
+                    Ok(()) => {
+                        let what = wrong(recording, &truth, &place);
+                        flaws.extend(what.map(|what| format!("{name}: {literal}: {what}")));
+                    }
+                    Err(more) => flaws.push(format!("{name}: {literal} does not help: {more}")),
                 }
+                let _ = std::fs::remove_dir_all(place);
                 match imported(recording, needs, &out) {
                     Ok(()) => {
                         let what = wrong(recording, &truth, &out);

@@ -44,17 +44,7 @@ impl StaticPreisach {
         // play 0 follows the voltage: it tells where the voltage is
         let now = cells.first().copied().unwrap_or(0.0);
         let now_deg = output(now);
-        let mut corners: Vec<f64> = (0..=levels).map(|k| k as f64).collect();
-        for (&x, width) in cells.iter().zip(0_i32..) {
-            corners.extend([x, x + f64::from(width)]);
-        }
-        corners.retain(|&c| c > 0.0 && c < highest && ((c > now) == (wanted_deg > now_deg)));
         let end = if wanted_deg > now_deg { highest } else { 0.0 };
-        corners.push(end);
-        corners.sort_by(f64::total_cmp);
-        if end == 0.0 {
-            corners.reverse();
-        }
         let reached = |top: f64| {
             let value = output(top);
             if end == 0.0 { value <= wanted_deg } else { value >= wanted_deg }
@@ -62,13 +52,39 @@ impl StaticPreisach {
         let top = if wanted_deg.to_bits() == now_deg.to_bits() {
             now
         } else {
-            let index = corners.partition_point(|&c| !reached(c)).min(corners.len() - 1);
-            let from = index.checked_sub(1).map_or(now, |before| corners[before]);
-            let (a, b) = (output(from), output(corners[index]));
+            let [from, to] = stretch([now, end], cells, reached);
+            let (a, b) = (output(from), output(to));
             let share = if a.to_bits() == b.to_bits() { 1.0 } else { (wanted_deg - a) / (b - a) };
-            from + share.clamp(0.0, 1.0) * (corners[index] - from)
+            from + share.clamp(0.0, 1.0) * (to - from)
         };
         memory.apply_coordinate(top);
         Ok(self.grid().range().lowest_volt() + top * self.grid().cell_volt())
     }
+}
+
+/// The stretch without a corner, from a coordinate where the wanted output is not reached to one where it is, within one of
+/// that kind. Corners are the whole cells and the voltages at which a play begins to move. Takes no memory of its own.
+fn stretch([from, to]: [f64; 2], cells: &[f64], reached: impl Fn(f64) -> bool) -> [f64; 2] {
+    let mut ends = [from, to];
+    let mut narrow = |corner: f64| {
+        let [low, high] = [ends[0].min(ends[1]), ends[0].max(ends[1])];
+        if low < corner && corner < high {
+            ends[usize::from(reached(corner))] = corner;
+        }
+        ends
+    };
+    // whole cells by halves
+    let [mut from, mut to] = [from, to];
+    loop {
+        let (first, last) = (from.min(to).floor() + 1.0, from.max(to).ceil() - 1.0);
+        if first > last {
+            break;
+        }
+        [from, to] = narrow((0.5 * (first + last)).floor());
+    }
+    for (&x, width) in cells.iter().zip(0_i32..) {
+        narrow(x);
+        narrow(x + f64::from(width));
+    }
+    ends
 }

@@ -17,7 +17,7 @@ use crate::progress::Progress;
 use bench_study::stored::write_actuator;
 use measured_data::Accuracy;
 use rotor_gap::{TableData, read_table};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use study_text::known::{DIAGNOSIS_FILES, LADDER_FILES, PLAN_FILES, SPECIMENS_FILES};
 
 /// Name of the actuator a diagnosis extended.
@@ -174,7 +174,9 @@ fn found_in(
     let found = found?;
     let findings = json(&Findings::from(&found))?;
     let tables = found.figures();
-    force.tables(output, &tables)?;
+    let read: Vec<&Path> =
+        args.records.reference.iter().map(PathBuf::as_path).chain([data]).collect();
+    force.tables(output, &tables, &read)?;
     write_actuator(&extended(&found)?, &output.join(EXTENDED_FILE))?;
     if let Some(case) = case {
         write_extended_case(&case, output)?;

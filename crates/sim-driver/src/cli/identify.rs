@@ -85,7 +85,7 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
     let place = |_: &str| Place::file(format!("{}/{DATASET}", args.bench.display()));
     warn(&actuator_warnings(&found.stored, place), args.format.form());
     if let (Some(folder), Some(figures)) = (&args.figures, &found.figures) {
-        args.force.tables(folder, figures)?;
+        args.force.tables(folder, figures, &[&args.bench])?;
     }
     write_actuator(&found.stored, output)?;
     if let Some(path) = &page_path {

@@ -24,7 +24,7 @@ use crate::SimError;
 use crate::case::{InflowChoice, LoadedCase, PAPER_CASE, load_case, shipped_case};
 use crate::choices::check_range;
 use crate::files::{
-    refuse_foreign, refuse_input, refuse_other_kind, refuse_other_text, write_atomic,
+    refuse_foreign, refuse_input, refuse_inside, refuse_other_kind, refuse_other_text, write_atomic,
 };
 use crate::output::{Format, warnings_text};
 use crate::problem::Problems;
@@ -201,8 +201,19 @@ impl ForceArgs {
         Ok(refuse_foreign(folder, known.iter().copied())?)
     }
 
-    /// Refuses to replace tables of a folder with other header lines than those to be written.
-    fn tables(self, folder: &Path, texts: &[(String, String)]) -> Result<(), SimError> {
+    /// Refuses to replace tables of a folder with other header lines than those to be written, and files of the folders with data,
+    /// which no command replaces.
+    fn tables(
+        self,
+        folder: &Path,
+        texts: &[(String, String)],
+        data: &[&Path],
+    ) -> Result<(), SimError> {
+        for ((name, _), data) in
+            texts.iter().flat_map(|text| data.iter().map(move |own| (text, own)))
+        {
+            refuse_inside(data, &folder.join(name))?;
+        }
         let is_table = |name: &str| [".csv", ".vtp"].iter().any(|ending| name.ends_with(ending));
         let tables = texts.iter().filter(|(name, _)| is_table(name));
         tables.into_iter().try_for_each(|(name, text)| self.table(Some(&folder.join(name)), text))

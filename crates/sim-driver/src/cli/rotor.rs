@@ -54,7 +54,7 @@ pub(super) fn wake(args: &WakeArgs) -> Result<(), SimError> {
     let (result, files) = Progress::during("free wake and trim", find)?;
     warn(&result.warnings, Format::Details);
     if let Some(folder) = &args.out {
-        args.force.tables(folder, &files)?;
+        args.force.tables(folder, &files, &[])?;
         write_texts(folder, files)?;
     }
     print(&result.render(args.format)?)?;

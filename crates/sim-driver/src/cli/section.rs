@@ -8,8 +8,8 @@ use crate::files::{refuse_input, write_atomic};
 use crate::output::{Printable, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::section::{
-    LoopQuestion, PolarQuestion, SectionChoice, loop_history, polar, section_response,
-    transient_history,
+    LoopQuestion, PolarQuestion, SectionChoice, airfoil_table, loop_history, polar,
+    section_response, transient_history,
 };
 use clap::ValueEnum;
 use flap_aero::{AeroError, AttachedFlowModel, FlapEffectiveness, Motion};
@@ -56,7 +56,7 @@ pub(super) fn section(args: &SectionArgs) -> Result<(), SimError> {
             incidences_rad: [mean - half, mean + half],
             points,
             stall,
-            table: args.table.clone(),
+            table: args.table.as_deref().map(airfoil_table).transpose()?,
         })?,
     };
     write_csv(args, &table.csv(), &table.remarks)?;

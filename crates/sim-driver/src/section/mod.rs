@@ -1,14 +1,29 @@
 //! `hhc section`: responses of a section with a trailing-edge flap, printed; the responses are of `section-study`.
 
-mod polar;
-
-pub use polar::{PolarQuestion, polar};
 pub use section_study::{
-    LoopQuestion, SectionChoice, SectionResult, SectionTable, loop_history, section_response,
-    transient_history,
+    LoopQuestion, PolarQuestion, SectionChoice, SectionResult, SectionTable, loop_history, polar,
+    section_response, transient_history,
 };
 
+use crate::SimError;
+use crate::files::{Folder, Source, airfoil_text, read_airfoil};
 use crate::output::{Printable, table};
+use flap_aero::C81Airfoil;
+use std::path::{Path, PathBuf};
+
+/// A C81 table: a file, or a shipped one by its name `shipped:...`.
+///
+/// # Errors
+/// [`SimError::Data`] if it cannot be read or is none.
+pub fn airfoil_table(path: &Path) -> Result<C81Airfoil, SimError> {
+    let source = match path.to_str() {
+        Some(name) if name.starts_with("shipped:") => {
+            airfoil_text(&Folder::Disk(PathBuf::new()), name)?
+        }
+        _ => Source::read(path)?,
+    };
+    Ok(read_airfoil(&source)?)
+}
 
 impl Printable for SectionResult {
     fn text(&self) -> String {

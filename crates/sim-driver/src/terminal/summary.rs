@@ -10,6 +10,8 @@ use std::path::Path;
 
 /// Rows of controls that leave room for the rest of a screen.
 const MOST_ROWS: usize = 24;
+/// Controls whose reduction with dissimilar blades is told; the rest is in the details.
+const MOST_UNLIKE: usize = 6;
 
 /// The screen of a run, whose results and report are in a folder.
 pub(crate) fn summary(report: &StudyReport<'_>, folder: &Path) -> String {
@@ -117,11 +119,25 @@ fn control(figures: &Figures, with_paper: bool, screen: &mut Sheet) {
     let meanings: Vec<&str> = meanings.iter().filter(|m| shown(m.0)).map(|m| m.1).collect();
     screen.paragraphs(&format!("{}.", meanings.join("; ")));
     screen.paragraphs("A negative number is a rise. lag: of the flap behind its voltage; flap: amplitude; both inboard / outboard.");
+    unlike(figures, screen);
     if with_paper {
         screen.paragraphs(
             "The paper's numbers are for feedback on its own actuator, read from its text.",
         );
     }
+}
+
+/// What dissimilar blades leave of the reductions of the table, which is that of blades alike.
+fn unlike(figures: &Figures, screen: &mut Sheet) {
+    let Some((_, controlled)) = figures.unlike_blades.split_first() else { return };
+    let each = controlled.iter().take(MOST_UNLIKE).map(|line| {
+        let falls_percent = 100.0 * (1.0 - line.cost_ratio);
+        format!("{} {falls_percent:.1} ({:.2})", line.flaps, line.other_cost_ratio)
+    });
+    let each = each.collect::<Vec<_>>().join("; ");
+    screen.paragraphs(&format!(
+        "The table is of blades alike. With the dissimilar blades of the case J falls by, percent (J of the other harmonics over J0): {each}."
+    ));
 }
 
 fn row(set: String, line: &ControlLine, figures: &Figures) -> Vec<String> {

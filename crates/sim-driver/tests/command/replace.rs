@@ -57,6 +57,13 @@ fn a_record_is_no_prediction() {
         "fig/residual_spectrum",
     );
     replaces_its_own_alone(&place, &identify, "a.");
+    // a run with the name of a figure is data: not even --force takes it
+    let run = place.read("bench/one_small.csv");
+    place.write("bench/residual_spectrum.csv", &run);
+    let into_data = [&identify[..], &["--figures", "bench", "--force"]].concat();
+    place.hhc(&into_data).rejected(&["bench/residual_spectrum.csv", "exists already"]);
+    assert_eq!(place.read("bench/residual_spectrum.csv"), run);
+    std::fs::remove_file(place.path().join("bench/residual_spectrum.csv")).unwrap();
     let record = place.read("bench/one_small.csv");
     let predict = ["predict", "a.ron", "--input", "bench/one_small.csv", "-o", "out.csv"];
     replaces_its_own_alone(&place, &predict, "out.csv");

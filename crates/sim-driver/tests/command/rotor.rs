@@ -403,6 +403,31 @@ fn every_unlike_blade_has_its_stability_and_loads() {
     assert!(text.contains("Moments of blade 3, dissimilar"), "{text}");
 }
 
+/// The reductions are of blades alike; what those of the case leave of them stands beside the table.
+#[test]
+fn the_screen_tells_what_dissimilar_blades_leave() {
+    let place = Place::new();
+    let unlike = "rotor: (dissimilar_blades: [(blade: 3, flap_motion: 0.0)]),\n    structure:";
+    place.write("alike.ron", QUICK_CASE);
+    place.write("unlike.ron", &QUICK_CASE.replacen("structure:", unlike, 1));
+    let screen = |case: &str| {
+        let text = place.hhc(&["run", case, "--out", "out"]).done();
+        text.split_whitespace().collect::<Vec<&str>>().join(" ")
+    };
+    let told = "With the dissimilar blades of the case J falls by, percent";
+    assert!(!screen("alike.ron").contains(told));
+    let text = screen("unlike.ron");
+    let json = place.hhc(&["report", "out", "--format", "json"]).json();
+    let own = number(&json["unlike_blades"][1]["cost_ratio"]);
+    let falls = format!("{:.1} (", 100.0 * (1.0 - own));
+    assert!(text.contains(told) && text.contains(&falls), "{falls} {text}");
+    assert!(
+        (own - number(&json["control"][0]["j_after"]) / number(&json["control"][0]["j_before"]))
+            .abs()
+            > 0.01
+    );
+}
+
 /// What a run doubts or refuses, each with its field.
 #[test]
 fn doubts_and_refusals_name_their_field() {

@@ -42,6 +42,14 @@ struct Spike {
     size: f64,
 }
 
+impl BenchRecord {
+    /// The record with its spikes replaced by straight lines, and what they were ([`Finding::Spikes`] of each channel); none if it
+    /// has none.
+    pub fn without_spikes(&self) -> Option<(Self, Vec<Finding>)> {
+        mended(self)
+    }
+}
+
 /// A record with its spikes replaced by straight lines, and what was found; none if it has none.
 pub(crate) fn mended(record: &BenchRecord) -> Option<(BenchRecord, Vec<Finding>)> {
     let (u, y) = (&record.voltage_volt, &record.output_deg);

@@ -1,12 +1,8 @@
 //! Static curves of a section.
 
-use super::{SectionChoice, SectionTable};
-use crate::SimError;
-use crate::files::{Folder, Source, airfoil_text, read_airfoil};
-use flap_aero::{C81Airfoil, StallAirfoil, StallSection, steady_response};
-use section_study::{stall_remark, within, within_points};
+use super::{SectionChoice, SectionTable, stall_remark, within, within_points};
+use flap_aero::{AeroError, C81Airfoil, StallAirfoil, StallSection, steady_response};
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 /// A static curve over incidence.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,16 +15,15 @@ pub struct PolarQuestion {
     pub points: usize,
     /// How the section stalls; `None` is linear.
     pub stall: Option<StallAirfoil>,
-    /// A C81 file that takes the place of the model.
-    pub table: Option<PathBuf>,
+    /// A table that takes the place of the model.
+    pub table: Option<C81Airfoil>,
 }
 
 /// The curve.
 ///
 /// # Errors
-/// [`SimError::Data`] if the file cannot be read, [`SimError::Section`] if it is no C81 file or a
-/// number is outside its range.
-pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
+/// [`AeroError`] of a number outside its range.
+pub fn polar(question: &PolarQuestion) -> Result<SectionTable, AeroError> {
     let [from, to] = question.incidences_rad;
     for (quantity, incidence) in [("first incidence, deg", from), ("last incidence, deg", to)] {
         within(quantity, incidence.to_degrees(), incidence.abs() <= TAU, "-360 to 360")?;
@@ -38,13 +33,7 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
     within_points(points)?;
     let incidences = (0..=points).map(|n| from + (to - from) * n as f64 / points as f64);
     let mach = question.section.mach;
-    if let Some(path) = &question.table {
-        let here = Folder::Disk(PathBuf::new());
-        let source = match path.to_str() {
-            Some(name) if name.starts_with("shipped:") => airfoil_text(&here, name)?,
-            _ => Source::read(path)?,
-        };
-        let airfoil = read_airfoil(&source)?;
+    if let Some(airfoil) = &question.table {
         within("Mach number", mach, mach >= 0.0, "a finite number, 0 or more")?;
         let rows = incidences.map(|a| {
             let point = airfoil.at(a, mach).value;
@@ -54,7 +43,7 @@ pub fn polar(question: &PolarQuestion) -> Result<SectionTable, SimError> {
             title: format!("{}, Mach {mach}", airfoil.name),
             columns: vec!["incidence_deg", "cl", "cd", "cm"],
             rows: rows.collect(),
-            remarks: table_remarks(&airfoil, [from, to].map(f64::to_degrees), mach),
+            remarks: table_remarks(airfoil, [from, to].map(f64::to_degrees), mach),
         });
     }
     let (section, mach, flap) = question.section.coefficients()?;
