@@ -2,7 +2,6 @@
 
 mod choice;
 mod intervals;
-mod levels;
 mod physical;
 mod summary;
 
