@@ -5,11 +5,17 @@ use super::{BenchIdentification, dataset_place};
 use crate::BenchError;
 use actuator_gap::judged;
 use measured_data::problem::{Fault, Problem};
-use preisach_dyn::identify::{Estimate, Family, LeftOut, ModelRow, Order, Settings};
+use preisach_dyn::identify::{
+    Estimate, Family, Finding, LeftOut, ModelRow, Order, RecordUse, Settings,
+};
 use serde::Serialize;
 
 /// The family of models that `hhc identify` writes; none leaves it to cross-validation.
 pub type ModelChoice = Option<Family>;
+
+/// Share of the error of the model picked that another one leaves of held-out runs to be named, and the least difference, percent.
+const FAR_BETTER: f64 = 0.5;
+const LEAST_GAIN_PERCENT: f64 = 1.0;
 
 /// Why a model is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -19,7 +25,7 @@ pub enum PickReason {
     OnlyFit,
     /// Cross-validation over the training runs chose it.
     CrossValidation,
-    /// Blocks in time of the only training run, left out of the fit in turn, chose it.
+    /// Blocks in time of the only or the largest training run, left out of the fit in turn, chose it.
     BlocksInTime,
     /// Too few training runs to leave one out: there is nothing to choose by.
     NothingToChooseBy,
@@ -58,6 +64,20 @@ impl BenchIdentification {
         both.map_or_else(Vec::new, |(table, row)| {
             known_quantities(table, row, &self.records, &self.settings)
         })
+    }
+
+    /// The model by which held-out runs are far better foretold than by the one picked.
+    pub(super) fn better_held_out(&self) -> Option<Finding> {
+        let (table, own) = (self.comparison.as_ref()?, self.pick.row.as_ref()?);
+        let percent = |row: &ModelRow| Some(100.0 * table.error_over(row, RecordUse::HeldOut)?.0);
+        let chosen_percent = percent(own)?;
+        let others = table.rows.iter().filter(|row| row.family != own.family);
+        let errors = others.filter_map(|row| Some((row.family, percent(row)?)));
+        let (family, nrmse_percent) = errors.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_far = nrmse_percent <= FAR_BETTER * chosen_percent
+            && chosen_percent - nrmse_percent >= LEAST_GAIN_PERCENT;
+        let model = family.name().to_owned();
+        is_far.then_some(Finding::BetterHeldOut { model, nrmse_percent, chosen_percent })
     }
 
     /// Takes a model of the comparison in the place of the dynamic Preisach model and judges it.
@@ -109,5 +129,68 @@ impl BenchIdentification {
         let fits = judged(&self.records, &self.identification, &self.model);
         self.fits = fits.map_err(|e| self.heading.misjudged(e))?;
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Comparing, identify_bench};
+    use super::*;
+    use measured_data::{Accuracy, BenchData, MeasuredTable, Run, RunFile};
+    use std::f64::consts::TAU;
+
+    /// A large and a small slow sine that train and one between them that does not, through plays.
+    fn bench() -> BenchData {
+        let run = |(volt, use_as): (f64, RecordUse)| {
+            let time_step_s = 0.01;
+            let input: Vec<f64> =
+                (0..1500).map(|i| 70.0 + volt * (TAU * f64::from(i) / 500.0).sin()).collect();
+            let mut plays = [70.0_f64; 3];
+            let at = |u: &f64| {
+                let mut y = *u;
+                for (play, half_width) in plays.iter_mut().zip([5.0, 15.0, 30.0]) {
+                    *play = play.min(u + half_width).max(u - half_width);
+                    y += 0.3 * *play;
+                }
+                y
+            };
+            let output = input.iter().map(at).collect();
+            let time_s = (0..1500).map(|i| time_step_s * f64::from(i)).collect();
+            let (id, use_as) = (format!("{volt} V"), Some(use_as));
+            let table = MeasuredTable { time_s, time_step_s, input, output, ..Default::default() };
+            Run { entry: RunFile { id, use_as, ..RunFile::default() }, table }
+        };
+        let (train, held_out) = (RecordUse::Train, RecordUse::HeldOut);
+        BenchData {
+            title: String::new(),
+            folder: "bench".into(),
+            runs: [(50.0, train), (12.0, train), (25.0, held_out)].map(run).to_vec(),
+            flap_deg_per_um: Some(1.0),
+            command_range_volt: (20.0, 120.0),
+            accuracy: Accuracy::default(),
+            warnings: vec![],
+            content_hash: String::new(),
+        }
+    }
+
+    /// Said of a line beside plays, not of plays beside a line.
+    #[test]
+    fn a_model_that_foretells_held_out_runs_far_better_is_named() {
+        let families = &[Family::Linear, Family::PrandtlPlays];
+        let only = Some(Comparing { families, done: &|| () });
+        let mut found = identify_bench(&bench(), &Settings::default(), only).unwrap();
+        found.pick(Some(Family::Linear)).unwrap();
+        let Some(Finding::BetterHeldOut { model, nrmse_percent, chosen_percent }) =
+            found.better_held_out()
+        else {
+            panic!("nothing is said")
+        };
+        assert_eq!(model, Family::PrandtlPlays.name());
+        assert!(nrmse_percent < 1.0 && chosen_percent > 5.0, "{nrmse_percent} {chosen_percent}");
+        let said = |f: &super::super::FindingLine| f.message.contains("far better foretold");
+        assert!(found.summary(None).findings.iter().any(said));
+        found.pick(None).unwrap();
+        assert_eq!(found.pick.family, Family::PrandtlPlays);
+        assert_eq!(found.better_held_out(), None);
     }
 }

@@ -2,6 +2,7 @@
 
 mod choice;
 mod intervals;
+mod levels;
 mod physical;
 mod summary;
 

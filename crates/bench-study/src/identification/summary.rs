@@ -65,6 +65,8 @@ impl BenchIdentification {
         of_data
             .filter(|finding| !matches!(finding, Finding::NotDescribed { .. }))
             .chain(not_described)
+            .chain(self.better_held_out())
+            .chain(self.levels_differ().unwrap_or_default())
             .map(|finding| FindingLine {
                 severity: finding.severity(),
                 message: said(subject, &finding, self.settings.deg_per_um),
@@ -448,8 +450,11 @@ impl IdentifyResult {
             LeftOut::Records => {
                 "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %, the noise taken off."
             }
-            LeftOut::Blocks => {
+            LeftOut::Blocks if self.trains_one() => {
                 "Left out: blocks in time of the one training run, each run through and scored on the block; by this\ncolumn the model marked * is chosen, a simpler one if it is within 3 %, the noise taken off."
+            }
+            LeftOut::Blocks => {
+                "Left out: blocks in time of the largest training run, as the commands of each run go beyond those of the others; by\nthis column the model marked * is chosen, a simpler one if it is within 3 %, the noise taken off."
             }
             LeftOut::Nothing => {
                 "Left out: too few training runs to leave one out. The model marked * is the usual one for such\nruns; nothing in the data chooses it."
@@ -468,12 +473,20 @@ impl IdentifyResult {
         parameter_table(&self.physical)
     }
 
+    /// Whether one run alone trains.
+    fn trains_one(&self) -> bool {
+        of_use(&self.runs, RecordUse::Train).len() == 1
+    }
+
     /// Why the model is the one judged, in words.
     pub(crate) fn picked(&self) -> &'static str {
         match self.picked_by {
             PickReason::OnlyFit => "the only one fitted",
             PickReason::CrossValidation => "chosen by cross-validation",
-            PickReason::BlocksInTime => "chosen by blocks in time of the one training run",
+            PickReason::BlocksInTime if self.trains_one() => {
+                "chosen by blocks in time of the one training run"
+            }
+            PickReason::BlocksInTime => "chosen by blocks in time of the largest training run",
             PickReason::NothingToChooseBy => {
                 "the usual one: too few training runs to choose a model by"
             }

@@ -345,3 +345,25 @@ fn the_noise_of_a_rest_takes_part_in_the_choice() {
     assert!((beside.rows[0].noise / told.rows[0].noise - 1.0).abs() < 0.05);
     assert!((told.rows[1].noise / told.rows[1].cross_validation.unwrap() - 1.0).abs() < 0.05);
 }
+
+/// Two bands of commands apart: each record left out asks for what the other does not show.
+#[test]
+fn records_beyond_all_others_are_not_left_out() {
+    let truth = bare(ActuatorLaw::StaticPreisach(static_law(24)));
+    let moved = |by_volt: f64, amplitude: f64| {
+        let (id, step_s, mut volts) = sine(0.2, amplitude, 3.0, 1e-2);
+        for u in &mut volts {
+            *u += by_volt;
+        }
+        record(&truth, (format!("{id} {by_volt}"), step_s, volts), || 0.0)
+    };
+    let left_out = |records: &[BenchRecord]| {
+        let families = vec![Family::Linear, Family::PrandtlPlays];
+        let candidates = Candidates { families, orders: vec![], ..Candidates::default() };
+        let table = compare_models(records, &settings(), &candidates, &|| ()).unwrap();
+        assert!(table.rows.iter().all(|row| row.cross_validation.unwrap().is_finite()));
+        table.left_out
+    };
+    assert_eq!(left_out(&[moved(-45.0, 25.0), moved(45.0, 30.0)]), LeftOut::Blocks);
+    assert_eq!(left_out(&[moved(-45.0, 25.0), moved(0.0, 80.0)]), LeftOut::Records);
+}

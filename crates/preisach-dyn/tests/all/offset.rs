@@ -5,8 +5,8 @@ use crate::common::Wavy;
 use chacha20::ChaCha8Rng;
 use preisach_dyn::forc::{self, ForcCurve, ForcData, ForcSettings};
 use preisach_dyn::identify::{
-    BenchRecord, Candidates, Family, FlapZero, Settings, StaticAccumulator, compare_models,
-    identify,
+    BenchRecord, Candidates, Family, FlapZero, ModelComparison, ModelRow, Settings,
+    StaticAccumulator, compare_models, identify,
 };
 use preisach_dyn::{
     ActuatorLaw, ActuatorModel, AmplifierStage, Calibration, HysteresisLaw, Lag, LinkageStage,
@@ -250,4 +250,89 @@ fn no_family_depends_on_offset_and_unit() {
         assert_eq!(near.chosen, away.chosen);
     }
     assert!(moved.is_empty(), "{moved:#?}");
+}
+
+/// Slow runs of exact plays with noise, amplitude in V and half cycles of each; one is a rise alone.
+fn bench_of_plays(runs: &[(f64, u32)], scale: f64) -> Vec<BenchRecord> {
+    let mut rng = ChaCha8Rng::seed_from_u64(13);
+    let noise = Normal::new(0.0, 0.05).unwrap();
+    let record = |&(amplitude, half_cycles): &(f64, u32)| {
+        let volt = |i: u32| 70.0 - amplitude * (TAU * f64::from(i) / 500.0).cos();
+        let voltage_volt: Vec<f64> = (0..250 * half_cycles).map(volt).collect();
+        let mut plays_volt = [voltage_volt[0]; 4];
+        let step = |u: &f64| {
+            let mut um = u + noise.sample(&mut rng);
+            for (play, half_width) in plays_volt.iter_mut().zip([5.0, 15.0, 30.0, 45.0]) {
+                *play = play.min(u + half_width).max(u - half_width);
+                um += 0.25 * *play;
+            }
+            scale * DEG_PER_UM * um
+        };
+        let output_deg = voltage_volt.iter().map(step).collect();
+        let id = format!("{amplitude} V, {half_cycles} half cycles");
+        BenchRecord { id, time_step_s: 0.01, voltage_volt, output_deg, ..BenchRecord::default() }
+    };
+    runs.iter().map(record).collect()
+}
+
+/// Settings of such a bench.
+fn settings_of_plays(scale: f64) -> Settings {
+    Settings {
+        range_volt: VoltageRange::new(20.0, 120.0).unwrap(),
+        deg_per_um: scale * DEG_PER_UM,
+        ..Settings::default()
+    }
+}
+
+/// Of a small loop alone, smoothness foretells the large one: as plays of one width that are alike, in every unit.
+#[test]
+fn what_smoothness_foretells_does_not_depend_on_the_unit() {
+    let error = |scale: f64| {
+        let [small, large] = [15.0, 50.0].map(|volt| bench_of_plays(&[(volt, 6)], scale));
+        let found = identify(&small, &settings_of_plays(scale)).unwrap();
+        let (model, truth) = (&found.static_only, &large[0]);
+        let ours = model.simulate(&truth.voltage_volt, truth.time_step_s).unwrap().output_deg;
+        let pairs = ours.iter().zip(&truth.output_deg);
+        let squares: f64 = pairs.map(|(a, b)| (a + found.zero_deg - b).powi(2)).sum();
+        (squares / ours.len() as f64).sqrt() / scale
+    };
+    let near = error(1.0);
+    println!("error of the large loop {near:.4} deg");
+    for scale in [1e-3, 1e3] {
+        let moved = (error(scale) / near - 1.0).abs();
+        println!("x {scale}: moves by {moved:.1e}");
+        assert!(moved < 1e-6, "x {scale}: {moved:e}");
+    }
+}
+
+/// A fold that leaves most of the density to smoothness has the same error in every unit: of loops, none but small ones.
+#[test]
+fn undetermined_folds_do_not_depend_on_the_unit() {
+    for runs in [&[(50.0, 1), (50.0, 6)][..], &[(50.0, 1), (50.0, 6), (15.0, 6)][..]] {
+        let found = |scale: f64| {
+            let settings = settings_of_plays(scale);
+            let families = vec![Family::PrandtlPlays, Family::StaticPreisach];
+            let candidates = Candidates { families, orders: vec![], ..Candidates::default() };
+            let records = bench_of_plays(runs, scale);
+            compare_models(&records, &settings, &candidates, &|| ()).unwrap()
+        };
+        let errors = |table: &ModelComparison| -> Vec<f64> {
+            let of_row = |row: &ModelRow| {
+                let fits = row.fitted.as_ref().unwrap().fits.iter().map(|fit| fit.nrmse);
+                fits.chain(row.cross_validation).collect::<Vec<f64>>()
+            };
+            table.rows.iter().flat_map(of_row).collect()
+        };
+        let near = found(1.0);
+        let [plays, density] = [0, 1].map(|row| near.rows[row].cross_validation.unwrap());
+        println!("{} runs, left out: plays {plays:.4}, density {density:.4}", runs.len());
+        for scale in [1e-3, 0.04, 10.0, 1e3] {
+            let away = found(scale);
+            assert_eq!(near.chosen, away.chosen, "x {scale}");
+            let pairs = errors(&near).into_iter().zip(errors(&away));
+            let moved = pairs.map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+            println!("x {scale}: errors move by {moved:.1e}");
+            assert!(moved < 1e-6, "x {scale}: {moved:e}");
+        }
+    }
 }

@@ -12,9 +12,9 @@ use std::ops::Range;
 
 /// Frequencies and amplitudes that differ by less than this share are one.
 const SAME: f64 = 0.05;
-/// Blocks in time of a single record.
+/// Blocks in time of a record.
 const BLOCKS: usize = 8;
-/// Share of the swing by which the commands of a block may leave those of the rest.
+/// Share of the swing by which the commands of what is left out may leave those of the rest.
 const BEYOND: f64 = 0.02;
 /// Fewest samples of such a block.
 const FEWEST_SAMPLES: usize = 16;
@@ -27,7 +27,7 @@ pub enum LeftOut {
     Nothing,
     /// Training records: those of one frequency, of one amplitude, or single ones.
     Records,
-    /// Blocks in time of the only training record.
+    /// Blocks in time of the only training record, or of the largest where the commands of each go beyond those of the rest.
     Blocks,
 }
 
@@ -37,7 +37,7 @@ impl LeftOut {
         match folds.first() {
             None => Self::Nothing,
             Some(Fold::Records(_)) => Self::Records,
-            Some(Fold::Block(_)) => Self::Blocks,
+            Some(Fold::Block(..)) => Self::Blocks,
         }
     }
 }
@@ -56,8 +56,8 @@ pub(crate) enum Folds {
 pub(crate) enum Fold {
     /// Records, as places in the slow and the fast ones, one after another.
     Records(Vec<usize>),
-    /// Samples of the only record.
-    Block(Range<usize>),
+    /// Samples of the record at a place.
+    Block(usize, Range<usize>),
 }
 
 impl Fold {
@@ -75,10 +75,11 @@ impl Fold {
                     places.iter().map(|&place| compare::training_nrmse(&model, all[place]));
                 Ok(mean_square(&errors.collect::<Result<Vec<_>, _>>()?))
             }
-            Self::Block(block) => {
-                let rest = [all[0].clone().without(block.clone())];
+            Self::Block(place, block) => {
+                let mut rest: Vec<Prepared> = all.iter().map(|&record| record.clone()).collect();
+                rest[*place] = all[*place].clone().without(block.clone());
                 let rest = Training::of(&rest, training.grid, training.settings)?;
-                Ok(compare::nrmse_over(&fit(&rest)?, all[0], block.clone())?.powi(2))
+                Ok(compare::nrmse_over(&fit(&rest)?, all[*place], block.clone())?.powi(2))
             }
         }
     }
@@ -92,23 +93,55 @@ impl Fold {
             Self::Records(places) => {
                 places.iter().map(|&place| square(all[place])).sum::<f64>() / places.len() as f64
             }
-            Self::Block(_) => square(all[0]),
+            Self::Block(place, _) => square(all[*place]),
         }
     }
 }
 
 /// The folds of some training records; none where there are too few.
+///
+/// Records whose commands go beyond those of all others say how a model is beyond what trained it, which is not asked: they
+/// are no fold. Where slow records alone train and none is left, blocks in time of the largest are.
 pub(crate) fn of(training: &Training, which: Folds) -> Vec<Fold> {
     let Training { slow, fast, .. } = training;
-    if let ([only], []) = (&slow[..], &fast[..]) {
-        return blocks(only);
+    let all = training.all();
+    let swings: Vec<[f64; 2]> = all.iter().map(|record| swing(record)).collect();
+    let within = |groups: Vec<Vec<usize>>| -> Vec<Vec<usize>> {
+        groups.into_iter().filter(|places| is_within(&swings, places)).collect()
+    };
+    let single = || (0..slow.len()).map(|place| vec![place]).collect::<Vec<_>>();
+    let records = |folds: Vec<Vec<usize>>| folds.into_iter().map(Fold::Records).collect();
+    if fast.is_empty() {
+        let folds = if slow.len() < 2 { Vec::new() } else { within(single()) };
+        if !folds.is_empty() {
+            return records(folds);
+        }
+        let span = |place: &usize| swings[*place][1] - swings[*place][0];
+        let largest = (0..slow.len()).max_by(|a, b| span(a).total_cmp(&span(b)).then(b.cmp(a)));
+        return largest.map_or_else(Vec::new, |place| blocks(place, slow[place]));
     }
-    let mut folds = conditions(fast, slow.len());
-    let fewest = if fast.is_empty() { 2 } else { 3 };
-    if slow.len() >= fewest && (fast.is_empty() || which == Folds::All) {
-        folds.extend((0..slow.len()).map(|place| vec![place]));
+    let conditions = conditions(fast, slow.len());
+    let kept = within(conditions.clone());
+    let mut folds = if kept.is_empty() { conditions } else { kept };
+    if slow.len() >= 3 && which == Folds::All {
+        folds.extend(within(single()));
     }
-    folds.into_iter().map(Fold::Records).collect()
+    records(folds)
+}
+
+/// The extremes of the commands of a record up to the last sample that trains.
+fn swing(record: &Prepared) -> [f64; 2] {
+    let end = record.record.trained_samples().end;
+    extremes(record.record.voltage_volt[..end].iter().copied())
+}
+
+/// Whether the commands of some parts are within those of the rest.
+fn is_within(swings: &[[f64; 2]], left_out: &[usize]) -> bool {
+    let rest = || (0..swings.len()).filter(|other| !left_out.contains(other));
+    let [low, _] = extremes(rest().map(|other| swings[other][0]));
+    let [_, high] = extremes(rest().map(|other| swings[other][1]));
+    let beyond = BEYOND * (high - low);
+    left_out.iter().all(|&own| swings[own][0] >= low - beyond && swings[own][1] <= high + beyond)
 }
 
 /// The error of folds that a model without misfit has: the noise over the spread. Of a record whose cycles do not repeat it
@@ -127,9 +160,8 @@ pub(crate) fn noise(training: &Training, folds: &[Fold], rest_noise_deg: Option<
     (squares.sum::<f64>() / folds.len().max(1) as f64).sqrt()
 }
 
-/// Blocks in time of the only record, of equal length. One whose commands go beyond those of the rest says how a model is
-/// beyond what trained it, which is not asked: it is none.
-fn blocks(record: &Prepared) -> Vec<Fold> {
+/// Blocks in time of the record at a place, of equal length, that are within the commands of its rest.
+fn blocks(place: usize, record: &Prepared) -> Vec<Fold> {
     let trained = record.record.trained_samples();
     if trained.len() < BLOCKS * FEWEST_SAMPLES {
         return Vec::new();
@@ -139,15 +171,8 @@ fn blocks(record: &Prepared) -> Vec<Fold> {
     let volts = &record.record.voltage_volt;
     let swings: Vec<[f64; 2]> =
         all.iter().map(|block| extremes(volts[block.clone()].iter().copied())).collect();
-    let is_within = |k: usize| {
-        let others = || (0..BLOCKS).filter(move |other| *other != k);
-        let [low, _] = extremes(others().map(|other| swings[other][0]));
-        let [_, high] = extremes(others().map(|other| swings[other][1]));
-        let beyond = BEYOND * (high - low);
-        swings[k][0] >= low - beyond && swings[k][1] <= high + beyond
-    };
-    let within = all.into_iter().enumerate().filter(|(k, _)| is_within(*k));
-    within.map(|(_, block)| Fold::Block(block)).collect()
+    let within = all.into_iter().enumerate().filter(|(k, _)| is_within(&swings, &[*k]));
+    within.map(|(_, block)| Fold::Block(place, block)).collect()
 }
 
 /// What is left out of the fast records in turn, as places from `first` on: all records of one

@@ -12,6 +12,10 @@ use nalgebra::DMatrix;
 /// 0.1 % of their rms.
 const ALMOST_RESIDUAL: f64 = 1e-7;
 const ALMOST_GAP: f64 = 1e-6;
+/// Gap of a full solution.
+const GAP: f64 = 1e-8;
+/// The same where smoothness of little weight says much of the solution: what it weighs is to be far above the gap.
+pub(crate) const FINE_GAP: f64 = 1e-10;
 
 /// A sparse row: unknown and coefficient.
 pub(crate) type Row = Vec<(usize, f64)>;
@@ -28,15 +32,6 @@ pub(crate) fn offset([low, high]: [f64; 2]) -> f64 {
     let middle = 0.5 * (low + high);
     let is_far = middle.abs() > SMALL_OFFSET * (high - low);
     if is_far && middle.is_finite() { middle } else { 0.0 }
-}
-
-/// Spreads of targets that the unknowns of a static map are in one unit with.
-const USUAL_SPREADS: std::ops::RangeInclusive<f64> = 1e-2..=1e2;
-
-/// The unit that targets of a spread are counted in, so that the unknowns are of order one: the solver's
-/// tolerance holds for their size too.
-pub(crate) fn unit(spread: f64) -> f64 {
-    if USUAL_SPREADS.contains(&spread) { 1.0 } else { spread }
 }
 
 /// `min sum_i w_i (a_i x - b_i)^2` subject to `c_k x >= d_k` and `e_k x = 0`.
@@ -100,11 +95,14 @@ impl LeastSquaresProgram {
         self.normal.len() + self.right.len()
     }
 
-    /// Counts all targets added so far in a unit.
-    pub(crate) fn count_targets_in(&mut self, unit: f64) {
-        for value in &mut self.right {
-            *value /= unit;
+    /// Counts all targets added so far from their weighted mean in a unit, so that the solver's tolerances are shares of
+    /// what they spread over. Gives the mean. Every row so far is to have unknown 0 with coefficient 1.
+    pub(crate) fn count_targets_in(&mut self, unit: f64) -> f64 {
+        let mean = self.right[0] / self.normal[packed(0, 0)];
+        for (column, value) in self.right.iter_mut().enumerate() {
+            *value = (*value - mean * self.normal[packed(0, column)]) / unit;
         }
+        mean
     }
 
     /// Multiplies the weights of all rows added so far.
@@ -154,11 +152,20 @@ impl LeastSquaresProgram {
         self.equalities.push(row);
     }
 
-    /// The minimiser. Any end but a full solution is an error, unless it is nearly there.
+    /// The minimiser, to a gap of [`GAP`]. Any end but a full solution is an error, unless it is nearly there.
     ///
     /// Rows must have been weighted so that their weights sum to about one: unscaled normal
     /// equations made the solver stop far from the minimum.
     pub(crate) fn solve(&self, stage: &'static str) -> Result<Vec<f64>, PreisachError> {
+        self.solve_to(GAP, stage)
+    }
+
+    /// As [`Self::solve`], to another gap.
+    pub(crate) fn solve_to(
+        &self,
+        gap: f64,
+        stage: &'static str,
+    ) -> Result<Vec<f64>, PreisachError> {
         let n = self.unknowns;
         let column = |column: usize| -> Row {
             let entries = (0..=column).map(|row| (row, self.normal[packed(row, column)]));
@@ -184,7 +191,9 @@ impl LeastSquaresProgram {
             PreisachError::QuadraticProgram { stage, status, iterations, primal_residual }
         };
         let refused = failed("Refused".into(), 0, f64::NAN);
-        let Ok(settings) = DefaultSettingsBuilder::default().verbose(false).build() else {
+        let mut settings = DefaultSettingsBuilder::default();
+        settings.verbose(false).tol_gap_abs(gap).tol_gap_rel(gap);
+        let Ok(settings) = settings.build() else {
             return Err(refused);
         };
         let Ok(mut solver) =

@@ -1,6 +1,6 @@
 //! The static map `G0` from quasi-static records, by constrained least squares.
 
-use crate::identify::fit::program::{LeastSquaresProgram, Row, unit};
+use crate::identify::fit::program::{FINE_GAP, LeastSquaresProgram, Row};
 use crate::identify::fit::training::Training;
 use crate::identify::records::prepared::Prepared;
 use crate::identify::records::record::spread;
@@ -178,16 +178,17 @@ impl Unknowns {
         variance: f64,
     ) -> Result<PlayMap, PreisachError> {
         let smoothness = Smoothness::of(&program, grid.levels(), smoothness);
-        let unit = unit(variance.sqrt());
-        program.count_targets_in(unit);
-        program.scale(unit * unit / variance);
-        let cells = unit * unit / variance * (self.count - 1) as f64;
+        // the map in spreads from the mean: neither the unit nor the zero of the targets says where the solver ends
+        let spread = variance.sqrt();
+        let mean = program.count_targets_in(spread);
         let rise = |j, k, scale| self.rise(j, k, scale);
+        let cells = (self.count - 1) as f64;
         smooth_density(grid.levels(), cells, smoothness, rise, &mut program);
-        let mut solution = program.solve("static map")?;
+        let mut solution = program.solve_to(FINE_GAP, "static map")?;
         for value in &mut solution {
-            *value *= unit;
+            *value *= spread;
         }
+        solution[0] += mean;
         Ok(self.map(grid, &solution))
     }
 

@@ -138,6 +138,22 @@ pub enum Finding {
         /// Root mean square of the NRMSE of the training records, percent.
         nrmse_percent: f64,
     },
+    /// Held-out records are far better foretold by another model than by the one chosen.
+    BetterHeldOut {
+        /// The other model.
+        model: String,
+        /// Root mean square of its NRMSE of the held-out records, percent.
+        nrmse_percent: f64,
+        /// The same of the model chosen, percent.
+        chosen_percent: f64,
+    },
+    /// Much of what the model leaves are levels that differ between records: they did not begin at rest with one history.
+    LevelsDiffer {
+        /// What the model leaves over the noise of repeated cycles.
+        noise_times: f64,
+        /// Difference of the levels over the largest range of an output, percent.
+        level_percent: f64,
+    },
 }
 
 impl Finding {
@@ -252,15 +268,49 @@ impl Finding {
                 ),
                 "check the columns, the sign of the output and the synchronisation of the channels",
             ),
-            Self::NotDescribed { nrmse_percent } => (
-                Severity::Suspect,
-                format!(
-                    "the model leaves {nrmse_percent:.0} % of the training records unexplained: they are outside its class"
-                ),
-                "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one",
-            ),
+            Self::NotDescribed { nrmse_percent } => not_described(*nrmse_percent),
+            Self::BetterHeldOut { model, nrmse_percent, chosen_percent } => {
+                better_held_out(model, *nrmse_percent, *chosen_percent)
+            }
+            Self::LevelsDiffer { noise_times, level_percent } => {
+                levels_differ(*noise_times, *level_percent)
+            }
         }
     }
+}
+
+fn not_described(nrmse_percent: f64) -> (Severity, String, &'static str) {
+    (
+        Severity::Suspect,
+        format!(
+            "the model leaves {nrmse_percent:.0} % of the training records unexplained: they are outside its class"
+        ),
+        "check the sign of the output, which has to rise with the input; otherwise another kind of model is needed: do not use this one",
+    )
+}
+
+fn better_held_out(
+    model: &str,
+    nrmse_percent: f64,
+    chosen_percent: f64,
+) -> (Severity, String, &'static str) {
+    (
+        Severity::Remark,
+        format!(
+            "held-out runs, which take no part in the choice, are far better foretold by {model}: NRMSE {nrmse_percent:.2} % rms against {chosen_percent:.2} %"
+        ),
+        "take that model if they are what it is for, or let more runs train",
+    )
+}
+
+fn levels_differ(noise_times: f64, level_percent: f64) -> (Severity, String, &'static str) {
+    (
+        Severity::Limits,
+        format!(
+            "what the model leaves of the training runs is {noise_times:.0} times their noise, much of it levels that differ between runs by {level_percent:.1} % of the output's range: each run began from another history"
+        ),
+        "begin every record at rest after the same history, such as cycles that fade, or record the run-up to it too",
+    )
 }
 
 /// What is said of a clipped channel, and the remedy.

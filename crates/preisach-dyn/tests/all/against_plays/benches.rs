@@ -33,6 +33,8 @@ pub(crate) enum Runs {
     OneFade,
     /// One record alone: a staircase, then a slow sine.
     OneOfStepsAndSine,
+    /// Two sines of 1 Hz, a large and a small one.
+    TwoSines,
 }
 
 /// A kind of actuator on a kind of bench.
@@ -72,6 +74,12 @@ pub(crate) const ONE_RECORD: [Bench; 7] = [
     bench("steps and sine, plays", Kind::Plays, Runs::OneOfStepsAndSine, 4, TIE),
     bench("steps and sine, relays", Kind::Relays, Runs::OneOfStepsAndSine, 3, TIE),
     bench("steps and sine, creep", Kind::Creep, Runs::OneOfStepsAndSine, 3, TIE),
+];
+
+/// Benches of a large and a small sine: neither says how a model is beyond what trained it.
+pub(crate) const TWO_SINES: [Bench; 2] = [
+    bench("two sines, plays", Kind::Plays, Runs::TwoSines, 6, TIE),
+    bench("two sines, relays", Kind::Relays, Runs::TwoSines, 6, TIE),
 ];
 
 const fn bench(
@@ -334,6 +342,7 @@ impl Bench {
                 train.push(mix("slow mix", 10.0, 40.0, &mut draw));
                 train
             }
+            Runs::TwoSines => [0.98, 0.24].map(|size| sine("sine", 1.0, [0.0, size], 5.0)).into(),
             Runs::OneFade => vec![("fade", 100.0, fade)],
             Runs::OneOfStepsAndSine => {
                 let mut stairs = random(6, &mut draw);

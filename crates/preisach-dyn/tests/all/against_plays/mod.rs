@@ -4,7 +4,7 @@
 
 mod benches;
 
-use benches::{BENCHES, Bench, Made, ONE_RECORD};
+use benches::{BENCHES, Bench, Made, ONE_RECORD, TWO_SINES};
 use nalgebra::{DMatrix, DVector};
 use preisach_dyn::identify::{BenchRecord, Candidates, Settings, compare_models};
 use rayon::prelude::*;
@@ -170,4 +170,10 @@ fn identification_without_options_is_as_good_as_plays_on_every_bench() {
 #[test]
 fn a_single_record_chooses_its_model_as_well_as_plays() {
     as_good_as_plays(&ONE_RECORD);
+}
+
+/// Left out, the large one of two sines would ask how models are beyond what trained them.
+#[test]
+fn two_sines_choose_their_model_as_well_as_plays() {
+    as_good_as_plays(&TWO_SINES);
 }
