@@ -4,7 +4,7 @@ use crate::ExportError;
 use crate::constant::Constant;
 use preisach_dyn::{
     ActuatorLaw, BoucWenParameters, DynamicParameters, Envelope, PlayMap, PrandtlParameters,
-    PreisachGrid, StaticPreisach, StopParameters, TimeOrder, VoltageRange,
+    PreisachGrid, RateForm, StaticPreisach, StopParameters, TimeOrder, VoltageRange,
 };
 
 /// A law ready to be written.
@@ -18,8 +18,6 @@ pub(crate) struct Law {
     pub(crate) functions: Vec<&'static str>,
     /// Whether the inverse has to guess the rate to come.
     pub(crate) guesses_rate: bool,
-    /// Whether the output rises with the voltage in straight pieces, whatever was before.
-    pub(crate) rises: bool,
 }
 
 impl Law {
@@ -36,7 +34,6 @@ impl Law {
                 memory: "linear.type",
                 functions: vec!["linear.functions"],
                 guesses_rate: false,
-                rises: false,
             },
             ActuatorLaw::StaticPreisach(law) => statics(law),
             ActuatorLaw::DynamicPreisach(law) => dynamics(law.parameters(), time_step_s),
@@ -85,7 +82,6 @@ fn statics(law: &StaticPreisach) -> Law {
         memory: "plays.type",
         functions: vec!["plays.plays", "plays.functions"],
         guesses_rate: false,
-        rises: law.map().nodes.iter().flat_map(|row| row.windows(2)).all(|own| own[0] <= own[1]),
     }
 }
 
@@ -112,11 +108,14 @@ fn dynamics(p: &DynamicParameters, time_step_s: f64) -> Law {
             [4.0, 1.0, scale, 2.0 * time_step_s * scale]
         }
     };
+    // of the other form nothing is known
+    let unfolded = if p.form == RateForm::WellPosed { p.unfolded_rate_deg_s } else { 0.0 };
     constants.extend([
         scalar("NOW", now, "", "backward difference: factor of the output"),
         scalar("BEFORE", before, "", "factor of the output before"),
         scalar("SCALE", scale, "", "factor of both"),
         scalar("WEIGHT_S", weight_s, "s", "factor of the rate"),
+        scalar("UNFOLDED_DEG_PER_S", unfolded, "deg/s", "rate up to which nothing folds"),
     ]);
     Law {
         title: match p.time_order {
@@ -132,7 +131,6 @@ fn dynamics(p: &DynamicParameters, time_step_s: f64) -> Law {
         memory: "dynamic.type",
         functions: vec!["plays.plays", "dynamic.functions"],
         guesses_rate: false,
-        rises: false,
     }
 }
 
@@ -169,8 +167,11 @@ fn at_least_one(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 fn prandtl(p: &PrandtlParameters) -> Law {
-    let thresholds = at_least_one(p.plays.iter().map(|play| play.threshold_volt));
-    let weights = at_least_one(p.plays.iter().map(|play| play.weight_deg_per_volt));
+    // the inverse in C takes the narrowest first
+    let mut plays = p.plays.clone();
+    plays.sort_by(|a, b| a.threshold_volt.total_cmp(&b.threshold_volt));
+    let thresholds = at_least_one(plays.iter().map(|play| play.threshold_volt));
+    let weights = at_least_one(plays.iter().map(|play| play.weight_deg_per_volt));
     let slope =
         p.plays.iter().fold(p.gain_deg_per_volt, |sum, play| sum + play.weight_deg_per_volt);
     let (envelope, curve) = envelope_constants(p.range_volt, slope, &p.envelope);
@@ -200,7 +201,6 @@ fn prandtl(p: &PrandtlParameters) -> Law {
         memory: "prandtl.type",
         functions: vec![curve, "prandtl.functions"],
         guesses_rate: p.threshold_growth_s > 0.0,
-        rises: false,
     }
 }
 
@@ -235,7 +235,6 @@ fn bouc_wen(p: &BoucWenParameters) -> Law {
         memory: "bouc_wen.type",
         functions: vec![curve, exponent, "bouc_wen.functions"],
         guesses_rate: false,
-        rises: false,
     }
 }
 
@@ -268,6 +267,5 @@ fn stops(p: &StopParameters) -> Law {
         memory: "stops.type",
         functions: vec!["stops.functions"],
         guesses_rate: false,
-        rises: false,
     }
 }

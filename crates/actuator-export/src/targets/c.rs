@@ -59,11 +59,10 @@ fn header(plan: &Plan<'_>, library: &Library) -> String {
     with(plan, HEADER, &more)
 }
 
-/// A piece of the inverse of a law that has one of its own.
+/// A piece of the inverse of a law whose rate has to be guessed.
 fn own_inverse(plan: &Plan<'_>, library: &Library, ending: &str) -> Option<String> {
-    let law = [(plan.law.guesses_rate, "prandtl"), (plan.law.rises, "plays")];
-    let own = law.iter().find(|(is_own, _)| *is_own)?.1;
-    Some(library.piece(&format!("{own}.inverse{ending}")).to_owned())
+    let piece = || library.piece(&format!("prandtl.inverse{ending}")).to_owned();
+    plan.law.guesses_rate.then(piece)
 }
 
 /// Lengths of lists, for the declarations.
@@ -90,6 +89,10 @@ fn source(plan: &Plan<'_>, library: &Library) -> String {
     let mut law_parts = vec![format!("/* {}:\n{equation} */", law.title)];
     law_parts.push(constants(&law.constants, ""));
     law_parts.push(library.pieces(law.functions.iter().copied()));
+    // what the dynamic law has to come near to is another map than its output
+    if law.memory != "dynamic.type" {
+        law_parts.push(library.piece("law.probe").to_owned());
+    }
     let law_text = law_parts.join("\n\n");
     let stages: String = plan.stages().map(|stage| stage_code(stage, library)).collect();
     let used = |constant: &&Constant| {
@@ -101,10 +104,6 @@ fn source(plan: &Plan<'_>, library: &Library) -> String {
         ("common_constants", constants(&common, "")),
         ("law", law_text),
         ("stages", stages),
-        (
-            "law_inverse",
-            if law.rises { library.piece("plays.rising").to_owned() } else { String::new() },
-        ),
         ("amplifier_start", glue.forward(List::Amplifier, "start")),
         ("linkage_start", glue.forward(List::Linkage, "start")),
         ("amplifier_step", glue.forward(List::Amplifier, "step")),
@@ -219,7 +218,7 @@ impl Glue<'_> {
         };
         let mut lines: Vec<String> = self.plan.linkage.iter().rev().filter_map(step).collect();
         lines.push(own_inverse(self.plan, self.library, "").unwrap_or_else(|| {
-            "        volt = law_inverse(&s->model.law, s->model.law_volt, deg, &reached);"
+            "        volt = law_inverse(&s->model.law, s->model.law_volt, deg, &s->deg_per_volt,\n                           &reached);"
                 .to_owned()
         }));
         lines.extend(self.plan.amplifier.iter().rev().filter_map(step));

@@ -1,18 +1,26 @@
+@@ law.probe
+/* The law's next output at a voltage, deg. */
+static double law_probe(const {{name}}_law *m, double volt)
+{
+    double ignored;
+    return law_off(m, volt, 0.0, &ignored);
+}
 @@ linear.type
 typedef struct {
     double volt;              /* last voltage, V */
 } {{name}}_law;
 @@ linear.functions
-static double law_probe(const {{name}}_law *m, double volt)
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
 {
     (void)m;
-    return GAIN_DEG_PER_VOLT * (volt - BIAS_VOLT);
+    *deg_per_volt = GAIN_DEG_PER_VOLT;
+    return GAIN_DEG_PER_VOLT * (volt - BIAS_VOLT) - wanted_deg;
 }
 
 static double law_step({{name}}_law *m, double volt)
 {
     m->volt = volt;
-    return law_probe(m, volt);
+    return GAIN_DEG_PER_VOLT * (volt - BIAS_VOLT);
 }
 
 static double law_start({{name}}_law *m, double volt)
@@ -55,34 +63,20 @@ static void rest({{name}}_law *m, double top)
     }
 }
 @@ plays.functions
-static double law_probe(const {{name}}_law *m, double volt)
+/* What a row rises by in the cell of x. */
+static double rise(const double *row, double x)
 {
-    const double top = cells(volt);
-    double sum = CONSTANT_DEG;
-    int j;
-    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
-        sum += at(G0_DEG[j], moved(m->play[j], top, j));
-    }
-    return sum;
+    const int knot = (int)x;
+    return row[knot + 1] - row[knot];
 }
 
-static double law_start({{name}}_law *m, double volt)
+/* The output of the plays as they stand. Four sums side by side: a single one would wait for every
+ * addition before it. */
+static double whole(const {{name}}_law *m)
 {
-    rest(m, cells(volt));
-    m->now_deg = law_probe(m, volt);
-    return m->now_deg;
-}
-
-static double law_step({{name}}_law *m, double volt)
-{
-    /* four sums side by side: a single one would wait for every addition before it */
     enum { LEFT = {{NAME}}_LEVELS % 4, WHOLE = {{NAME}}_LEVELS - LEFT };
-    const double top = cells(volt);
     double sum[4] = {CONSTANT_DEG, 0.0, 0.0, 0.0};
     int j, lane;
-    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
-        m->play[j] = moved(m->play[j], top, j);
-    }
     for (j = WHOLE; j < {{NAME}}_LEVELS; ++j) {
         sum[j - WHOLE] += at(G0_DEG[j], m->play[j]);
     }
@@ -91,68 +85,52 @@ static double law_step({{name}}_law *m, double volt)
             sum[lane] += at(G0_DEG[j + lane], m->play[j + lane]);
         }
     }
-    m->now_deg = (sum[0] + sum[1]) + (sum[2] + sum[3]);
-    return m->now_deg;
+    return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
-@@ plays.inverse_state
-    double deg_per_volt;      /* slope of the law where it came to last */
-@@ plays.inverse_start
-    s->deg_per_volt = 1.0;
-@@ plays.inverse
-        volt = rising_inverse(&s->model.law, s->model.law_volt, deg, &s->deg_per_volt, &reached);
-@@ plays.rising
-/* The output at a voltage, from the last one and the plays that move on the way, and its slope there. These are the
- * first plays: none moves unless all narrower ones do. */
-static double moved_output(const {{name}}_law *m, double volt, double *deg_per_volt)
+
+/* How far the output at a voltage is from the wanted one, and its slope there: from the last output
+ * and the plays that move on the way. These are the first ones: none moves unless all narrower ones
+ * do. */
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
 {
     const double top = cells(volt);
-    double sum[2] = {0.0, 0.0}, slope = 0.0;
+    double change = 0.0, slope = 0.0;
     int j;
     for (j = 0; j < {{NAME}}_LEVELS; ++j) {
         const double was = m->play[j], x = moved(was, top, j);
-        const double *from = G0_DEG[j] + (int)was, *to = G0_DEG[j] + (int)x;
-        const double rise = to[1] - to[0];
         if (!(x < was || x > was)) {
             break;
         }
-        sum[0] += to[0] - from[0];
-        sum[1] += (x - (int)x) * rise - (was - (int)was) * (from[1] - from[0]);
-        slope += rise;
+        change += at(G0_DEG[j], x) - at(G0_DEG[j], was);
+        slope += rise(G0_DEG[j], x);
     }
     *deg_per_volt = slope / CELL_VOLT;
-    return m->now_deg + (sum[0] + sum[1]);
+    return m->now_deg + change - wanted_deg;
 }
 
-/* As law_inverse, of a map in which every play rises with its input: the output rises with the voltage in
- * straight pieces, and Newton's method from the slope of the last sample needs a probe or two. */
-static double rising_inverse(const {{name}}_law *m, double last_volt, double wanted_deg,
-                             double *deg_per_volt, int *reached)
+static double law_start({{name}}_law *m, double volt)
 {
-    double volt = last_volt, off = m->now_deg - wanted_deg;
-    const int rises = off < 0.0;
-    int i;
-    for (i = 0; i < 5 && fabs(off) > TOLERANCE_DEG; ++i) {
-        volt -= off / *deg_per_volt;
-        if (!(volt >= LOWEST_VOLT && volt <= HIGHEST_VOLT && (volt > last_volt) == rises)) {
-            break;
-        }
-        off = moved_output(m, volt, deg_per_volt) - wanted_deg;
+    rest(m, cells(volt));
+    m->now_deg = whole(m);
+    return m->now_deg;
+}
+
+static double law_step({{name}}_law *m, double volt)
+{
+    const double top = cells(volt);
+    int j;
+    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
+        m->play[j] = moved(m->play[j], top, j);
     }
-    if (fabs(off) <= TOLERANCE_DEG && volt >= LOWEST_VOLT && volt <= HIGHEST_VOLT) {
-        return volt;
-    }
-    volt = law_inverse(m, last_volt, wanted_deg, reached);
-    moved_output(m, volt, deg_per_volt);
-    if (!(*deg_per_volt > 0.0)) {
-        *deg_per_volt = 1.0;
-    }
-    return volt;
+    m->now_deg = whole(m);
+    return m->now_deg;
 }
 @@ dynamic.type
 typedef struct {
     double play[{{NAME}}_LEVELS];   /* states of the plays in cells: 0 to {{NAME}}_LEVELS - j */
     double now_deg;           /* output, deg */
     double before_deg;        /* output one step earlier, deg */
+    double g0_deg, g1_s, g2_s2_per_deg;   /* sums of the maps over the plays */
     int moving;               /* 0 at rest, 1 once there is an earlier output */
 } {{name}}_law;
 @@ dynamic.functions
@@ -160,11 +138,20 @@ typedef struct {
  *     delta = base + weight d,   base = (now delta_n - before delta_{n-1}) scale
  *     G2 d^2 - b d + q = 0,      b = weight - G1,   q = G0 - base
  *     d = 2 q / (b + sign(b) sqrt(b^2 - 4 G2 q)), past the fold d = b / (2 G2) */
+static double based(const {{name}}_law *m)
+{
+    return m->moving ? (NOW * m->now_deg - BEFORE * m->before_deg) * SCALE : m->now_deg;
+}
+
+static double weight(const {{name}}_law *m)
+{
+    return m->moving ? WEIGHT_S : TIME_STEP_S;
+}
+
 static double advanced(const {{name}}_law *m, double g0, double g1, double g2)
 {
-    const double base = m->moving ? (NOW * m->now_deg - BEFORE * m->before_deg) * SCALE : m->now_deg;
-    const double weight = m->moving ? WEIGHT_S : TIME_STEP_S;
-    const double b = weight - g1;
+    const double base = based(m);
+    const double b = weight(m) - g1;
     const double q = g0 - base;
     const double discriminant = b * b - 4.0 * g2 * q;
     double rate;                                  /* deg/s */
@@ -173,35 +160,87 @@ static double advanced(const {{name}}_law *m, double g0, double g1, double g2)
     } else {
         rate = fabs(q) > 0.0 ? 2.0 * q / (b + copysign(sqrt(discriminant), b)) : 0.0 * q;
     }
-    return base + weight * rate;
+    return base + weight(m) * rate;
+}
+
+/* What play j adds to G0 + d G1 + d^2 G2 at a knot, deg. */
+static double with_rate(int j, int knot, double d)
+{
+    return G0_DEG[j][knot] + d * (G1_S[j][knot] + d * G2_S2_PER_DEG[j][knot]);
+}
+
+/* G0, G1 and G2 of the plays as they stand. */
+static void whole({{name}}_law *m)
+{
+    double g0 = CONSTANT_DEG, g1 = CONSTANT_S, g2 = CONSTANT_S2_PER_DEG;
+    int j;
+    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
+        const double x = m->play[j];
+        g0 += at(G0_DEG[j], x);
+        g1 += at(G1_S[j], x);
+        g2 += at(G2_S2_PER_DEG[j], x);
+    }
+    m->g0_deg = g0;
+    m->g1_s = g1;
+    m->g2_s2_per_deg = g2;
 }
 
 static double law_probe(const {{name}}_law *m, double volt)
 {
     const double top = cells(volt);
-    double g0 = CONSTANT_DEG, g1 = CONSTANT_S, g2 = CONSTANT_S2_PER_DEG;
+    double g0 = m->g0_deg, g1 = m->g1_s, g2 = m->g2_s2_per_deg;
     int j;
     for (j = 0; j < {{NAME}}_LEVELS; ++j) {
-        const double x = moved(m->play[j], top, j);
-        g0 += at(G0_DEG[j], x);
-        g1 += at(G1_S[j], x);
-        g2 += at(G2_S2_PER_DEG[j], x);
+        const double was = m->play[j], x = moved(was, top, j);
+        if (!(x < was || x > was)) {
+            break;
+        }
+        g0 += at(G0_DEG[j], x) - at(G0_DEG[j], was);
+        g1 += at(G1_S[j], x) - at(G1_S[j], was);
+        g2 += at(G2_S2_PER_DEG[j], x) - at(G2_S2_PER_DEG[j], was);
     }
     return advanced(m, g0, g1, g2);
 }
 
+/* A wanted output has a known rate d: the law is then a static one, and straight between knots.
+ *     G0 + d G1 + d^2 G2 = wanted,   d = (wanted - base) / weight
+ * How far the left side at a voltage is from the wanted output, and its slope. Beyond the rate up to
+ * which nothing folds the slope is given as 0. The plays that move are the first ones: none moves
+ * unless all narrower ones do. */
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
+{
+    const double base = based(m), d = (wanted_deg - base) / weight(m);
+    const double top = cells(volt);
+    double change = 0.0, slope = 0.0;
+    int j;
+    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
+        const double was = m->play[j], x = moved(was, top, j);
+        const int knot = (int)x, knot_was = (int)was;
+        const double low = with_rate(j, knot, d), rise = with_rate(j, knot + 1, d) - low;
+        if (!(x < was || x > was)) {
+            break;
+        }
+        if (knot == knot_was) {
+            change += (x - was) * rise;
+        } else {
+            const double low_was = with_rate(j, knot_was, d);
+            const double rise_was = with_rate(j, knot_was + 1, d) - low_was;
+            change += (low - low_was) + ((x - knot) * rise - (was - knot_was) * rise_was);
+        }
+        slope += rise;
+    }
+    *deg_per_volt = fabs(d) <= UNFOLDED_DEG_PER_S ? slope / CELL_VOLT : 0.0;
+    return m->g0_deg + d * (m->g1_s + d * m->g2_s2_per_deg) + change - wanted_deg;
+}
+
 static double law_start({{name}}_law *m, double volt)
 {
-    double g0 = CONSTANT_DEG;
-    int j;
     rest(m, cells(volt));
-    for (j = 0; j < {{NAME}}_LEVELS; ++j) {
-        g0 += at(G0_DEG[j], m->play[j]);
-    }
-    m->now_deg = g0;
-    m->before_deg = g0;
+    whole(m);
+    m->now_deg = m->g0_deg;
+    m->before_deg = m->g0_deg;
     m->moving = 0;
-    return g0;
+    return m->now_deg;
 }
 
 static double law_step({{name}}_law *m, double volt)
@@ -212,7 +251,8 @@ static double law_step({{name}}_law *m, double volt)
     for (j = 0; j < {{NAME}}_LEVELS; ++j) {
         m->play[j] = moved(m->play[j], top, j);
     }
-    deg = law_probe(m, volt);
+    whole(m);
+    deg = advanced(m, m->g0_deg, m->g1_s, m->g2_s2_per_deg);
     m->before_deg = m->now_deg;
     m->now_deg = deg;
     m->moving = 1;
@@ -223,6 +263,7 @@ typedef struct {
     double play[{{NAME}}_PLAYS];    /* outputs of the plays, V */
     double volt;              /* last voltage, V */
     double growth_volt;       /* growth of the half-widths over a step, V */
+    double z_deg;             /* output before the curve, deg */
 } {{name}}_law;
 @@ prandtl.envelope
 /* The output curve, deg: offset + z (1 + quadratic zeta + cubic zeta^2), zeta = z / reference. */
@@ -231,11 +272,22 @@ static double curve(double z)
     const double zeta = z / REFERENCE_DEG;
     return OFFSET_DEG + z * (1.0 + zeta * (QUADRATIC + zeta * CUBIC));
 }
+
+static double curve_slope(double z)
+{
+    const double zeta = z / REFERENCE_DEG;
+    return 1.0 + zeta * (2.0 * QUADRATIC + zeta * 3.0 * CUBIC);
+}
 @@ prandtl.flat
 /* The output curve of a law without any slope, deg. */
 static double curve(double z)
 {
     return OFFSET_DEG + 0.0 * z;
+}
+
+static double curve_slope(double z)
+{
+    return 0.0 * z;
 }
 @@ prandtl.functions
 /* A play of half-width `half` after its input moved to `volt`, V. */
@@ -245,29 +297,51 @@ static double moved(double play, double volt, double half)
     return lowered > volt - half ? lowered : volt - half;
 }
 
-/* The output at a voltage, the half-widths grown by growth_volt. */
-static double law_probe(const {{name}}_law *m, double volt)
+/* How far the output at a voltage, the half-widths grown by growth_volt, is from the wanted one, and
+ * its slope there: from the last output and the plays that move on the way. These are the narrowest:
+ * none moves unless all narrower ones do. */
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
 {
-    double z = GAIN_DEG_PER_VOLT * (volt - MIDDLE_VOLT);
+    double z = m->z_deg + GAIN_DEG_PER_VOLT * (volt - m->volt), slope = GAIN_DEG_PER_VOLT;
     int i;
     for (i = 0; i < {{NAME}}_PLAYS; ++i) {
-        const double play = moved(m->play[i], volt, THRESHOLD_VOLT[i] + m->growth_volt);
-        z += WEIGHT_DEG_PER_VOLT[i] * (play - MIDDLE_VOLT);
+        const double was = m->play[i];
+        const double play = moved(was, volt, THRESHOLD_VOLT[i] + m->growth_volt);
+        if (!(play < was || play > was)) {
+            break;
+        }
+        z += WEIGHT_DEG_PER_VOLT[i] * (play - was);
+        slope += WEIGHT_DEG_PER_VOLT[i];
     }
-    return curve(z);
+    *deg_per_volt = slope * curve_slope(z);
+    return curve(z) - wanted_deg;
 }
 
 static double law_move({{name}}_law *m, double volt, double growth_volt)
 {
-    double z = GAIN_DEG_PER_VOLT * (volt - MIDDLE_VOLT);
+    /* four sums side by side: a single one would wait for every addition before it */
+    double a = GAIN_DEG_PER_VOLT * (volt - MIDDLE_VOLT), b = 0.0, c = 0.0, d = 0.0;
     int i;
     for (i = 0; i < {{NAME}}_PLAYS; ++i) {
-        m->play[i] = moved(m->play[i], volt, THRESHOLD_VOLT[i] + growth_volt);
-        z += WEIGHT_DEG_PER_VOLT[i] * (m->play[i] - MIDDLE_VOLT);
+        const double was = m->play[i], play = moved(was, volt, THRESHOLD_VOLT[i] + growth_volt);
+        if (!(play < was || play > was)) {
+            break;
+        }
+        m->play[i] = play;
+    }
+    for (i = 0; i + 3 < {{NAME}}_PLAYS; i += 4) {
+        a += WEIGHT_DEG_PER_VOLT[i] * (m->play[i] - MIDDLE_VOLT);
+        b += WEIGHT_DEG_PER_VOLT[i + 1] * (m->play[i + 1] - MIDDLE_VOLT);
+        c += WEIGHT_DEG_PER_VOLT[i + 2] * (m->play[i + 2] - MIDDLE_VOLT);
+        d += WEIGHT_DEG_PER_VOLT[i + 3] * (m->play[i + 3] - MIDDLE_VOLT);
+    }
+    for (; i < {{NAME}}_PLAYS; ++i) {
+        a += WEIGHT_DEG_PER_VOLT[i] * (m->play[i] - MIDDLE_VOLT);
     }
     m->volt = volt;
     m->growth_volt = growth_volt;
-    return curve(z);
+    m->z_deg = (a + b) + (c + d);
+    return curve(m->z_deg);
 }
 
 static double law_start({{name}}_law *m, double volt)
@@ -291,18 +365,21 @@ static double law_step({{name}}_law *m, double volt)
 }
 @@ prandtl.inverse_state
     {{name}}_law slow;        /* the law without rate, on its own way: tells the rate to come */
+    double slow_deg_per_volt; /* its slope at the last sample */
 @@ prandtl.inverse_start
     law_start(&s->slow, s->model.law_volt);
+    s->slow_deg_per_volt = 0.0;
 @@ prandtl.inverse
         {
             /* the half-widths of the next sample follow from the rate of an inverse without rate:
              * the equation for the true rate has no stable solution that goes forward in time */
             {{name}}_law law = s->model.law;
             int ignored;
-            const double slow_volt = law_inverse(&s->slow, s->slow.volt, deg, &ignored);
+            const double slow_volt =
+                law_inverse(&s->slow, s->slow.volt, deg, &s->slow_deg_per_volt, &ignored);
             law.growth_volt = growth(&s->slow, slow_volt);
             law_move(&s->slow, slow_volt, 0.0);
-            volt = law_inverse(&law, law.volt, deg, &reached);
+            volt = law_inverse(&law, law.volt, deg, &s->deg_per_volt, &reached);
         }
 @@ stops.type
 typedef struct {
@@ -324,19 +401,26 @@ static double smooth(double volt, double rate_volt_per_s)
     return OFFSET_DEG + elastic + VISCOSITY_DEG_S_PER_VOLT * rate_volt_per_s;
 }
 
-static double law_probe(const {{name}}_law *m, double volt)
+/* How far the output at a voltage is from the wanted one, and its slope there. */
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
 {
     double deg = smooth(volt, (volt - m->volt) / TIME_STEP_S);
     int i;
+    *deg_per_volt = STIFFNESS_DEG_PER_VOLT + VISCOSITY_DEG_S_PER_VOLT / TIME_STEP_S;
     for (i = 0; i < {{NAME}}_STOPS; ++i) {
-        deg += STOP_DEG_PER_VOLT[i] * (volt - moved(m->play[i], volt, THRESHOLD_VOLT[i]));
+        const double was = m->play[i], play = moved(was, volt, THRESHOLD_VOLT[i]);
+        deg += STOP_DEG_PER_VOLT[i] * (volt - play);
+        if (!(play < was || play > was)) {
+            *deg_per_volt += STOP_DEG_PER_VOLT[i];
+        }
     }
-    return deg;
+    return deg - wanted_deg;
 }
 
 static double law_step({{name}}_law *m, double volt)
 {
-    const double deg = law_probe(m, volt);
+    double ignored;
+    const double deg = law_off(m, volt, 0.0, &ignored);
     int i;
     for (i = 0; i < {{NAME}}_STOPS; ++i) {
         m->play[i] = moved(m->play[i], volt, THRESHOLD_VOLT[i]);
@@ -360,6 +444,12 @@ typedef struct {
     double volt;              /* last voltage, V */
 } {{name}}_law;
 @@ bouc_wen.exponent_1
+/* dw/dx: 1 + k |w| below zero, 1 - w above. */
+static double slope(double w)
+{
+    return w < 0.0 ? 1.0 - K * w : 1.0 - w;
+}
+
 /* w >= 0 after its argument has risen by x. */
 static double above(double w, double x)
 {
@@ -380,6 +470,12 @@ static double risen(double w, double length)
     return K > 0.0 ? w - (1.0 / K - w) * expm1(-K * length) : w + length;
 }
 @@ bouc_wen.exponent_2
+/* dw/dx: 1 + k w^2 below zero, 1 - w^2 above. */
+static double slope(double w)
+{
+    return w < 0.0 ? 1.0 + K * w * w : 1.0 - w * w;
+}
+
 /* w >= 0 after its argument has risen by x. */
 static double above(double w, double x)
 {
@@ -440,27 +536,31 @@ static double hysteretic(double w, double change_volt)
     return length > 0.0 ? sign * held(risen(sign * w, length), -1.0, 1.0) : w;
 }
 
-/* The output of a hysteretic variable at a voltage, deg. */
+/* The output of a hysteretic variable at a voltage before the curve, deg. */
 static double output(double w, double volt)
 {
-    return curve(GAIN_DEG_PER_VOLT * (volt - MIDDLE_VOLT) - HALF_HEIGHT_DEG * w);
+    return GAIN_DEG_PER_VOLT * (volt - MIDDLE_VOLT) - HALF_HEIGHT_DEG * w;
 }
 
-static double law_probe(const {{name}}_law *m, double volt)
+/* How far the output at a voltage is from the wanted one, and its slope there. */
+static double law_off(const {{name}}_law *m, double volt, double wanted_deg, double *deg_per_volt)
 {
-    return output(hysteretic(m->w, volt - m->volt), volt);
+    const double change_volt = volt - m->volt, w = hysteretic(m->w, change_volt);
+    const double z = output(w, volt), rise = slope(copysign(1.0, change_volt) * w) / RISE_VOLT;
+    *deg_per_volt = (GAIN_DEG_PER_VOLT - HALF_HEIGHT_DEG * rise) * curve_slope(z);
+    return curve(z) - wanted_deg;
 }
 
 static double law_start({{name}}_law *m, double volt)
 {
     m->w = 0.0;
     m->volt = volt;
-    return output(0.0, volt);
+    return curve(output(0.0, volt));
 }
 
 static double law_step({{name}}_law *m, double volt)
 {
     m->w = hysteretic(m->w, volt - m->volt);
     m->volt = volt;
-    return output(m->w, volt);
+    return curve(output(m->w, volt));
 }

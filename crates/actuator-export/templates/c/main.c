@@ -108,12 +108,10 @@ static double between(const {{name}}_law *m, double wanted_deg, double a, double
     return b;
 }
 
-/* The voltage nearest to the last one at which the law's next output is the wanted one. Searched
- * in growing strides, first in the direction in which the output rises or falls towards it. Where
- * there is none, the end of the range that comes nearest. */
-static double law_inverse(const {{name}}_law *m, double last_volt, double wanted_deg, int *reached)
+/* The same, searched in growing strides, first in the direction in which the output rises or falls
+ * towards it. Where there is none, the end of the range that comes nearest. */
+static double law_search(const {{name}}_law *m, double here, double wanted_deg, int *reached)
 {
-    const double here = held(last_volt, LOWEST_VOLT, HIGHEST_VOLT);
     const double off_here = law_probe(m, here) - wanted_deg;
     double nearest = here, off_nearest = off_here;
     int turn;
@@ -142,7 +140,34 @@ static double law_inverse(const {{name}}_law *m, double last_volt, double wanted
     return nearest;
 }
 
-{{law_inverse}}
+/* The voltage nearest to the last one at which the law's next output is the wanted one. The slope of
+ * the last sample is most often that of the next: Newton's method from there needs a probe or two.
+ * A law that does not rise towards the wanted output nearby is searched. */
+static double law_inverse(const {{name}}_law *m, double last_volt, double wanted_deg,
+                          double *deg_per_volt, int *reached)
+{
+    const double here = held(last_volt, LOWEST_VOLT, HIGHEST_VOLT);
+    const double near = (HIGHEST_VOLT - LOWEST_VOLT) / 16.0;
+    double volt = here, slope, off = law_off(m, here, wanted_deg, &slope);
+    const int rises = off < 0.0;
+    int i;
+    slope = *deg_per_volt;
+    for (i = 0; i < 6 && slope > 0.0; ++i) {
+        volt -= off / slope;
+        if (!(volt >= LOWEST_VOLT && volt <= HIGHEST_VOLT && fabs(volt - here) <= near
+              && (volt > here) == rises)) {
+            break;
+        }
+        off = law_off(m, volt, wanted_deg, &slope);
+        if (fabs(off) <= TOLERANCE_DEG && slope > 0.0) {
+            *deg_per_volt = slope;
+            return volt;
+        }
+    }
+    volt = law_search(m, here, wanted_deg, reached);
+    law_off(m, volt, wanted_deg, deg_per_volt);
+    return volt;
+}
 
 double {{name}}_inverse_start({{name}}_inverse_state *s, double volt)
 {
@@ -150,6 +175,7 @@ double {{name}}_inverse_start({{name}}_inverse_state *s, double volt)
                              : 0.5 * (LOWEST_VOLT + HIGHEST_VOLT);
     {{name}}_start(&s->model, s->volt);
     s->out_of_reach = 0;
+    s->deg_per_volt = 0.0;
 {{inverse_start}}
     return s->model.output_deg;
 }

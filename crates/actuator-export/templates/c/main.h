@@ -47,6 +47,7 @@ typedef struct {
 typedef struct {
     {{name}}_state model;     /* moves as the flap is expected to move */
 {{inverse_state}}
+    double deg_per_volt;      /* slope of the law at the last sample; 0 before one is known */
     double volt;              /* last command, V */
     int out_of_reach;         /* 1 where the flap cannot follow: then model.output_deg is where it goes */
 } {{name}}_inverse_state;

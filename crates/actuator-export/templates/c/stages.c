@@ -206,14 +206,15 @@ static double {{id}}_step({{name}}_{{id}} *m, double x)
     return x - {{ID}}_SHARE * m->late;
 }
 @@ accommodation.inverse
-/* The input for an output y: Newton's method, which comes to the change from above. */
+/* The input for an output y: Newton's method, which comes to the change from above. It begins with
+ * its step from no change, which needs no exponential. */
 static double {{id}}_inverse(const {{name}}_{{id}} *m, double y)
 {
     const double wanted = y - (m->input - {{ID}}_SHARE * m->late);
     const double way = fabs(wanted);
     const double sign = copysign(1.0, wanted);
     const double ahead = {{ID}}_SHARE * ({{ID}}_TRAVEL_DEG - sign * m->late);
-    double d = way + ahead;
+    double d = fmin(way / (1.0 - ahead / {{ID}}_TRAVEL_DEG), way + ahead);
     int i;
     if (!(way > 0.0)) {
         return m->input;
@@ -223,7 +224,7 @@ static double {{id}}_inverse(const {{name}}_{{id}} *m, double y)
         const double step = (d - ahead * (1.0 - left) - way)
                             / (1.0 - ahead / {{ID}}_TRAVEL_DEG * left);
         d -= step;
-        if (!(step > 1e-16 * way)) {
+        if (!(step > 1e-8 * way)) {     /* the next one would be below its square */
             break;
         }
     }
