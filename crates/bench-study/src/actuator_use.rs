@@ -32,7 +32,10 @@ pub fn use_text(own: &ActuatorUse) -> String {
         let all = own.samples.iter().map(of);
         let (low, high) =
             all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        format!("{} to {}", significant(low, 5), significant(high, 5))
+        // rounding beside the other end is a zero
+        let least = 1e-9 * low.abs().max(high.abs());
+        let shown = |value: f64| if value.abs() < least { 0.0 } else { significant(value, 5) };
+        format!("{} to {}", shown(low), shown(high))
     };
     sheet.labelled("Actuator", &own.actuator);
     let (count, step) = (own.samples.len(), significant(own.step_s, 6));

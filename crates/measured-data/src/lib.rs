@@ -29,9 +29,10 @@ pub use files::{
     refuse_other_text, refuse_unwritable, remove_own, ron_text, with_field_moved, write_atomic,
     write_folder, write_new,
 };
+pub use import::EvenRecord;
 pub use tables::{
-    Channel, ChannelFile, Channels, ColumnTable, Dimension, EvenRecord, MeasuredTable, PointCsv,
-    UNITS, Unit, limits, parse_columns, parse_measured_csv, significant,
+    Channel, ChannelFile, Channels, ColumnTable, Dimension, MeasuredTable, PointCsv, UNITS, Unit,
+    limits, parse_columns, parse_measured_csv, significant,
 };
 
 /// The example of the crate's README, run as a documentation test.

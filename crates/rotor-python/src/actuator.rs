@@ -78,9 +78,7 @@ impl Actuator {
     /// Names of input and output with their units.
     #[getter]
     fn channels(&self) -> (String, String) {
-        let [input, output] = [self.stored.input_columns(), self.stored.output_columns()];
-        let first = |names: Vec<String>| names.into_iter().next().unwrap_or_default();
-        (first(input), first(output))
+        (self.stored.input_column(), self.stored.output_column())
     }
 
     /// Voltages it knows, V: lowest and highest.

@@ -213,10 +213,12 @@ fn of_use(place: &Path) -> Result<Vec<Target>, XtaskError> {
         (
             "predict CSV",
             [&measured[..1], &measured[..]],
-            (|files| used(files, StoredActuator::predicted).is_ok()) as Use,
+            (|files| {
+                used(files, (&ColumnOptions::default(), None), StoredActuator::predicted).is_ok()
+            }) as Use,
         ),
         ("invert CSV", [&measured[1..], &[("flap_deg", 2.0)][..]], |files| {
-            used(files, StoredActuator::inverted).is_ok()
+            used(files, (&ColumnOptions::default(), None), StoredActuator::inverted).is_ok()
         }),
     ] {
         let (own, actuator) = (place.join("use").join(reader.replace(' ', "_")), actuator.clone());

@@ -3,7 +3,7 @@
 use super::history_inverse::{HistoryInverseSettings, history_inverse};
 use crate::StoredActuator;
 use measured_data::EvenRecord;
-use measured_data::problem::Problem;
+use measured_data::problem::{Fault, Place, Problem};
 use preisach_dyn::{Drive, PreisachError};
 use serde::Serialize;
 
@@ -88,10 +88,12 @@ type Output = (String, Vec<f64>, bool);
 
 /// The output that a record has beside its times.
 fn output_of(own: &StoredActuator, record: &EvenRecord) -> Result<Option<Output>, Problem> {
-    if let Some((name, values)) = record.one_of(&own.output_columns())? {
-        return Ok(Some((name, values, true)));
+    let (input, output) = (own.input_column(), own.output_column());
+    if let Some(values) = record.column(&output, &input)? {
+        return Ok(Some((output, values, true)));
     }
-    Ok(record.one_of(&[FLAP.to_owned()])?.map(|(name, values)| (name, values, false)))
+    // another angle than that of its name is no flap
+    Ok(record.column(FLAP, FLAP)?.map(|values| (FLAP.to_owned(), values, false)))
 }
 
 /// Flap angles in the unit of an output column.
@@ -99,6 +101,17 @@ fn shown(own: &StoredActuator, angles_deg: &[f64], is_displacement: bool) -> Vec
     let calibration = own.model.calibration;
     let one = |deg: &f64| if is_displacement { calibration.displacement_um(*deg) } else { *deg };
     angles_deg.iter().map(one).collect()
+}
+
+/// An error with what to do about a record that goes beyond the range.
+fn remedied(error: PreisachError, record: &str) -> UseError {
+    if !matches!(error, PreisachError::VoltageOutOfRange { .. }) {
+        return error.into();
+    }
+    let message = format!(
+        "{error}: identify the actuator from runs that go as far; the numbers of a monitor output are brought back with --scale command=FACTOR"
+    );
+    Problem::new(Place::file(record), Fault::Other(message)).into()
 }
 
 /// How far outputs are from what is beside them.
@@ -132,19 +145,21 @@ impl StoredActuator {
     /// # Errors
     /// [`UseError`]: no command, blank cells, a command outside the range.
     pub fn predicted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
-        let inputs = self.input_columns();
-        let (input, command) = record.one_of(&inputs)?.ok_or_else(|| record.missing(&inputs[0]))?;
+        let (input, output) = (self.input_column(), self.output_column());
+        let command = record.column(&input, &output)?.ok_or_else(|| record.missing(&input))?;
         let measured = output_of(self, record)?;
         let (name, is_displacement) = match &measured {
             Some((name, _, is_displacement)) => (name.clone(), *is_displacement),
-            None => (self.output_columns().swap_remove(0), true),
+            None => (output, true),
         };
-        let output = self.output_under(&command, record.step_s, is_displacement)?;
+        let output = self
+            .output_under(&command, record.step_s, is_displacement)
+            .map_err(|error| remedied(error, &record.name))?;
         let beside = measured.as_ref().map(|own| &own.1[..]);
         let samples = samples(&record.time_s, &command, &output, beside);
         Ok(ActuatorUse {
             actuator: self.title.clone(),
-            record: record.table.header_place().file,
+            record: record.name.clone(),
             step_s: record.step_s,
             columns: [input, name],
             error: beside.map(|beside| deviation_of(&output, beside, false)),
@@ -160,14 +175,14 @@ impl StoredActuator {
     /// [`UseError`]: no motion, blank cells, an actuator that does not move.
     pub fn inverted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
         let (name, wanted, is_displacement) =
-            output_of(self, record)?.ok_or_else(|| record.missing(&self.output_columns()[0]))?;
+            output_of(self, record)?.ok_or_else(|| record.missing(&self.output_column()))?;
         let found = self.command_for(&wanted, record.step_s, is_displacement)?;
         let samples = samples(&record.time_s, &found.input, &found.output, Some(&wanted));
         Ok(ActuatorUse {
             actuator: self.title.clone(),
-            record: record.table.header_place().file,
+            record: record.name.clone(),
             step_s: record.step_s,
-            columns: [self.input_columns().swap_remove(0), name],
+            columns: [self.input_column(), name],
             error: Some(found.error),
             at_limit: Some(found.at_limit),
             simulations: Some(found.simulations),

@@ -155,16 +155,16 @@ impl StoredFit {
 }
 
 impl StoredActuator {
-    /// What a column of its input may be called, the usual name first: that of its data, then `command_V`.
-    pub fn input_columns(&self) -> Vec<String> {
-        let own = self.channels.as_ref().map(|own| own.input.clone());
-        own.into_iter().chain(["command_V".to_owned()]).collect()
+    /// Name and unit of its input: `command_V`, or those of the data of a generic loop.
+    pub fn input_column(&self) -> String {
+        self.channels.as_ref().map_or_else(|| "command_V".to_owned(), |own| own.input.clone())
     }
 
-    /// The same of its output: that of its data, then `displacement_um`.
-    pub fn output_columns(&self) -> Vec<String> {
-        let own = self.channels.as_ref().map(|own| own.output.clone());
-        own.into_iter().chain(["displacement_um".to_owned()]).collect()
+    /// The same of its output: `displacement_um`, or those of the data of a generic loop.
+    pub fn output_column(&self) -> String {
+        self.channels
+            .as_ref()
+            .map_or_else(|| "displacement_um".to_owned(), |own| own.output.clone())
     }
 
     /// What is impossible or unlikely about the actuator; nothing is known of that of a generic loop.

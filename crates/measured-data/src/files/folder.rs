@@ -2,7 +2,6 @@
 
 use crate::problem::{Fault, Place, Problem};
 use std::fmt;
-use std::io::Read;
 use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
@@ -187,21 +186,6 @@ impl Folder {
 }
 
 impl Source {
-    /// Reads a text file on disk; of the path `-` what comes in at standard input.
-    ///
-    /// # Errors
-    /// [`Fault::Unreadable`] or [`Fault::NotText`].
-    pub fn read_or_stdin(path: &Path) -> Result<Self, Problem> {
-        if path.as_os_str() != STANDARD_INPUT {
-            return Self::read(path);
-        }
-        let name = "standard input";
-        let refused = |fault| Problem::new(Place::file(name), fault);
-        let mut bytes = Vec::new();
-        std::io::stdin().read_to_end(&mut bytes).map_err(|e| refused(e.into()))?;
-        as_text(name.to_owned(), bytes)
-    }
-
     /// Reads a text file on disk.
     ///
     /// # Errors

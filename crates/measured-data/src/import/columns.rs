@@ -1,7 +1,7 @@
 //! Which columns of a source are taken, under which name, in which unit.
 
-use super::ImportKind;
 use super::gather::{Gather, Reduction};
+use super::{ImportKind, Reading};
 use crate::problem::Fault;
 use crate::tables::{Channel, Dimension, QUANTITIES, UNITS, Unit, input_and_output, unknown_unit};
 
@@ -218,13 +218,8 @@ impl Choice {
     }
 }
 
-/// Chooses from the named columns. `wanted` forces the kind of data folder.
-pub(super) fn choose(
-    (columns, mut left_out): Named,
-    options: &ColumnOptions,
-    wanted: Option<ImportKind>,
-    sampling_hz: Option<f64>,
-) -> Result<Choice, Fault> {
+/// The columns of the time, then the others.
+fn times_apart(columns: Vec<(usize, Channel)>) -> (Vec<(usize, Channel)>, Vec<(usize, Channel)>) {
     let (mut times, mut data): (Vec<_>, Vec<_>) =
         columns.into_iter().partition(|(_, c)| c.is_time());
     if times.is_empty() {
@@ -233,22 +228,63 @@ pub(super) fn choose(
             times.push(data.remove(at));
         }
     }
+    (times, data)
+}
+
+/// The time, s; none of a source that has a rate instead.
+fn time_taken(
+    time: Option<&(usize, Channel)>,
+    sampling_hz: Option<f64>,
+) -> Result<Option<Taken>, Fault> {
+    match (time, sampling_hz) {
+        (Some(_), Some(_)) => Err(no_effect(
+            "--sampling-hz",
+            "the file has a time column",
+            "leave it out, or leave the time column out: --columns with - in its place",
+        )),
+        (Some((source, channel)), None) => {
+            let time = converted(*source, channel, "s")?;
+            let channel = Channel { name: "time".to_owned(), ..time.channel };
+            Ok(Some(Taken { channel, ..time }))
+        }
+        (None, Some(_)) => Ok(None),
+        (None, None) => {
+            let message = "there is no time column; name one `time_s`, or give --sampling-hz";
+            Err(Fault::Other(message.to_owned()))
+        }
+    }
+}
+
+/// Chooses from the named columns what they are read into.
+pub(super) fn choose(
+    (columns, mut left_out): Named,
+    options: &ColumnOptions,
+    into: Reading,
+    sampling_hz: Option<f64>,
+) -> Result<Choice, Fault> {
+    let (times, mut data) = times_apart(columns);
+    let (wanted, least) = match into {
+        Reading::Folder(wanted) => (wanted, 2),
+        Reading::Record => (None, 1),
+    };
+    if into != Reading::Record && !times.is_empty() && data.len() + left_out.len() == 1 {
+        let only = data.first().map(|(_, channel)| channel.label());
+        return Err(one_channel(&only.unwrap_or_else(|| left_out.remove(0))));
+    }
     // columns without units are the likelier flaw than no time
-    if (times.is_empty() && sampling_hz.is_none() || data.len() < 2) && !left_out.is_empty() {
+    if (times.is_empty() && sampling_hz.is_none() || data.len() < least) && !left_out.is_empty() {
         let named: Vec<_> = times.into_iter().chain(data).collect();
         return Err(unitless(&named, &left_out));
     }
-    let time = match times.first() {
-        Some((source, channel)) => {
-            let time = converted(*source, channel, "s")?;
-            Some(Taken { channel: Channel { name: "time".to_owned(), ..time.channel }, ..time })
-        }
-        None if sampling_hz.is_some() => None,
-        None => {
-            let message = "there is no time column; name one `time_s`, or give --sampling-hz";
-            return Err(Fault::Other(message.to_owned()));
-        }
-    };
+    let time = time_taken(times.first(), sampling_hz)?;
+    if into == Reading::Record {
+        let columns = data.iter().map(|(source, c)| converted(*source, c, c.unit.symbol));
+        let columns = columns.collect::<Result<_, _>>()?;
+        let kind = ImportKind::GenericLoop;
+        let mut choice = Choice { time, columns, kind, left_out, corrections: Vec::new() };
+        choice.correct(options)?;
+        return Ok(choice);
+    }
     let said = [&options.columns, &options.convert, &options.input, &options.response];
     let is_own = said.into_iter().all(Option::is_none);
     if is_own && wanted.is_none_or(|kind| kind == ImportKind::ActuatorBench) {
@@ -261,13 +297,6 @@ pub(super) fn choose(
     let is_loop = !bench || options.input.is_some() || options.response.is_some();
     let found = if is_loop { ImportKind::GenericLoop } else { ImportKind::ActuatorBench };
     let kind = wanted.unwrap_or(found);
-    if time.is_some() && sampling_hz.is_some() {
-        return Err(no_effect(
-            "--sampling-hz",
-            "the file has a time column",
-            "leave it out, or leave the time column out: --columns with - in its place",
-        ));
-    }
     let columns = match kind {
         ImportKind::ActuatorBench => {
             let given = [
@@ -373,6 +402,13 @@ fn converted(source: usize, channel: &Channel, unit: &str) -> Result<Taken, Faul
     Ok(Taken { source, channel, factor, shift: 0.0, from_unit: factor })
 }
 
+/// The fault of a record of one channel.
+fn one_channel(only: &str) -> Fault {
+    Fault::Other(format!(
+        "there is one channel beside the time, `{only}`, and a record needs input and output: export both into one file, or import the two files together"
+    ))
+}
+
 /// Input and output of a generic loop, in their own units or those asked for.
 fn loop_columns(data: &[(usize, Channel)], options: &ColumnOptions) -> Result<Vec<Taken>, Fault> {
     let missing = |wanted: &str, remedy| Fault::MissingColumn {
@@ -385,11 +421,7 @@ fn loop_columns(data: &[(usize, Channel)], options: &ColumnOptions) -> Result<Ve
         at.ok_or_else(|| missing(wanted, "correct --input or --response"))
     };
     if let [(_, only)] = data {
-        let message = format!(
-            "there is one channel beside the time, `{}`, and a record needs input and output: export both into one file, or import the two files together",
-            only.label()
-        );
-        return Err(Fault::Other(message));
+        return Err(one_channel(&only.label()));
     }
     let input = options.input.as_ref().map(find).transpose()?;
     let output = options.response.as_ref().map(find).transpose()?;
@@ -481,7 +513,7 @@ mod tests {
     fn chosen(columns: &str, more: &ColumnOptions) -> Result<String, Fault> {
         let count = columns.split(',').count();
         let named = name_columns(&options(columns), None, count)?;
-        let choice = choose(named, more, None, None)?;
+        let choice = choose(named, more, Reading::Folder(None), None)?;
         let taken: Vec<String> =
             choice.columns.iter().map(|c| format!("{} {}", c.channel.label(), c.factor)).collect();
         Ok(format!("{:?} {}", choice.kind, taken.join(", ")))
@@ -514,7 +546,7 @@ mod tests {
             ..none.clone()
         };
         let count = name_columns(&options("time_s,command_V,displacement_mm"), None, 3).unwrap();
-        let choice = choose(count, &monitor, None, None).unwrap();
+        let choice = choose(count, &monitor, Reading::Folder(None), None).unwrap();
         let numbers: Vec<f64> = choice.converted([1.0, 2.0, 301.0]).collect();
         assert_eq!(numbers[..2], [1.0, 30.0]);
         assert!(

@@ -519,6 +519,9 @@ impl Gather {
     /// longer is twice the shorter and rare, samples may have been lost: that is no clock. The step is that of the straight line of least squares through the stamps.
     fn rounded(&self) -> Option<(Even, f64)> {
         let &[a, b] = &self.time.steps[..] else { return None };
+        if self.count < LEAST_PART {
+            return None;
+        }
         let (short, long) = if a.0 < b.0 { (a, b) } else { (b, a) };
         let grain_s = long.0 - short.0;
         let multiple = short.0 / grain_s;

@@ -2,7 +2,7 @@
 
 use super::columns::{ColumnOptions, choose, name_columns};
 use super::gather::Reduction;
-use super::{ImportKind, Table};
+use super::{Reading, Table};
 use crate::problem::{Place, Problem, Problems};
 
 /// The columns of a record: names where the file gives them, and the numbers.
@@ -24,14 +24,14 @@ impl WholeColumns {
         self,
         file: &str,
         options: &ColumnOptions,
-        kind: Option<ImportKind>,
+        into: Reading,
         reduction: Reduction,
     ) -> Result<(Table, String), Problems> {
         let refused = |fault| Problem::new(Place::file(file), fault);
         let stated_hz = self.step_s.map(|step_s| 1.0 / step_s);
         let reduction = Reduction { sampling_hz: reduction.sampling_hz.or(stated_hz), ..reduction };
         let choice = name_columns(options, self.names.as_deref(), self.columns.len())
-            .and_then(|named| choose(named, options, kind, reduction.sampling_hz))
+            .and_then(|named| choose(named, options, into, reduction.sampling_hz))
             .map_err(refused)?;
         let mut problems = Problems::default();
         let mut gather = choice.gather(file, reduction);

@@ -11,6 +11,7 @@ mod in_memory;
 mod mapping;
 mod mat;
 mod micromag;
+mod record;
 mod sweep;
 mod tdms;
 mod text;
@@ -20,6 +21,7 @@ pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
 pub use mapping::{deg_per_um_of_arm, import_mapped};
 pub use mat::{MatValue, Variables, mat_file, read_variables};
+pub use record::EvenRecord;
 
 use crate::dataset::DatasetKind;
 use crate::error::DataError;
@@ -108,6 +110,15 @@ pub struct ImportRequest {
 /// Most samples of a run if the user does not say it.
 pub const MOST_SAMPLES: usize = 1 << 18;
 
+/// What the columns of a source are read into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Reading {
+    /// A run of a data folder: of this kind, or of the one they make.
+    Folder(Option<ImportKind>),
+    /// A record of its own, with every column in its unit.
+    Record,
+}
+
 /// The records read from a source: one unless it was parted.
 struct Table {
     parts: Vec<Gathered>,
@@ -169,9 +180,7 @@ fn check_request(request: &ImportRequest) -> Result<(), Problems> {
     for (option, value) in
         [("--sampling-hz", request.sampling_hz), ("--reduce-to-hz", request.reduce_to_hz)]
     {
-        if let Some(value) = value.filter(|v| !(v.is_finite() && *v > 0.0)) {
-            let remedy = "give the frequency, or leave it out";
-            let fault = Fault::NotPositive { value, unit: "Hz", remedy };
+        if let Some(fault) = value.and_then(fault_of_rate) {
             problems.push(place(option), fault);
         }
     }
@@ -191,6 +200,13 @@ fn check_request(request: &ImportRequest) -> Result<(), Problems> {
         problems.push(place("--deg-per-um"), Fault::NotPositive { value, unit: "deg/um", remedy });
     }
     problems.into_result(Some(()))
+}
+
+/// What is wrong with a rate, Hz; none if it can be one.
+fn fault_of_rate(value: f64) -> Option<Fault> {
+    let remedy = "give the frequency, or leave it out";
+    let is_rate = value.is_finite() && value > 0.0;
+    (!is_rate).then_some(Fault::NotPositive { value, unit: "Hz", remedy })
 }
 
 /// Refuses options that mean nothing for a source; `words` say what it is.
@@ -254,17 +270,26 @@ struct OpenSource {
 }
 
 impl OpenSource {
-    fn open(path: &Path, request: &ImportRequest) -> Result<Self, Problem> {
+    fn open(path: &Path, kind: Option<SourceKind>) -> Result<Self, Problem> {
+        if path.as_os_str() == STANDARD_INPUT {
+            let reader = Box::new(BufReader::new(std::io::stdin()));
+            return Self::of(reader, Path::new("standard input"), kind);
+        }
+        Self::of(Box::new(open_reader(path)?), path, kind)
+    }
+
+    /// Opens what a reader gives; `path` names it.
+    fn of(
+        mut reader: Box<dyn BufRead>,
+        path: &Path,
+        kind: Option<SourceKind>,
+    ) -> Result<Self, Problem> {
         let name = path.display().to_string();
         let refused = |fault| Problem::new(Place::file(&name), fault);
         let whole = |reader: &mut dyn BufRead| {
             let bytes = read_at_most(reader, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
             refuse_large(&bytes).map_err(refused)?;
             Ok::<_, Problem>(bytes)
-        };
-        let mut reader: Box<dyn BufRead> = match name.as_str() {
-            STANDARD_INPUT => Box::new(BufReader::new(std::io::stdin())),
-            _ => Box::new(open_reader(path)?),
         };
         let mut packed = "";
         if reader.fill_buf().map_err(|e| refused(e.into()))?.starts_with(GZIP) {
@@ -284,7 +309,7 @@ impl OpenSource {
             head = text.iter().copied().take(RECOGNISED).collect();
             reader = Box::new(Cursor::new(text));
         }
-        let kind = match request.source {
+        let kind = match kind {
             Some(kind) => kind,
             None => recognise(&head, path).map_err(refused)?,
         };
@@ -301,15 +326,15 @@ fn read_joined(
         return Ok(None);
     }
     let open = |path: &PathBuf| {
-        let source = OpenSource::open(path, request).ok()?;
+        let source = OpenSource::open(path, request.source).ok()?;
         let is_text = source.kind == SourceKind::Csv;
         let opened = is_text.then(|| text::Opened::open(source.reader, &source.name).ok())??;
         opened.is_single().then_some((opened, source.name))
     };
     let Some(((a, name), (b, _))) = open(paths[0]).zip(open(paths[1])) else { return Ok(None) };
     let both = a.beside(b, &name)?;
-    let (columns, kind) = (&request.columns, request.kind);
-    let table = text::read_csv(both, &name, columns, kind, request.reduction())?;
+    let into = Reading::Folder(request.kind);
+    let table = text::read_csv(both, &name, &request.columns, into, request.reduction())?;
     Ok(Some(ReadSource {
         path: paths[0].clone(),
         kind: SourceKind::Csv,
@@ -340,39 +365,53 @@ fn refuse_large(bytes: &[u8]) -> Result<(), Fault> {
 }
 
 fn read_source(path: &Path, request: &ImportRequest) -> Result<ReadSource, Problems> {
-    let OpenSource { name, kind, mut reader, packed } = OpenSource::open(path, request)?;
-    let refused = |fault| Problem::new(Place::file(&name), fault);
+    let source = OpenSource::open(path, request.source)?;
+    let kind = source.kind;
     let words = format!("this is a {}", kind.words());
-    refuse_without_effect(request, kind.takes(), &words).map_err(refused)?;
-    let reduction = request.reduction();
-    let mut recognised = format!("{}{packed}", kind.words());
-    let imported = if kind == SourceKind::Csv {
-        let (columns, kind) = (&request.columns, request.kind);
-        let opened = text::Opened::open(reader, &name)?;
-        recognised = format!("{recognised}, {}", opened.words());
-        let table = text::read_csv(opened, &name, columns, kind, reduction)?;
-        Imported::Record(Box::new(table))
-    } else {
-        let bytes = read_at_most(&mut reader, LARGEST_WHOLE + 1).map_err(|e| refused(e.into()))?;
-        refuse_large(&bytes).map_err(refused)?;
-        if matches!(kind, SourceKind::Mat | SourceKind::Tdms) {
-            let (columns, into) = (&request.columns, request.kind);
-            let (table, taken) = if kind == SourceKind::Mat {
-                let which = (columns, request.variable.as_deref());
-                mat::read_mat(&bytes, &name, which, into, reduction)?
-            } else {
-                let found = tdms::read_tdms(&bytes).map_err(refused)?;
-                found.table(&name, columns, into, reduction)?
-            };
-            recognised = format!("{recognised}, {taken}");
-            Imported::Record(Box::new(table))
-        } else {
-            let text = String::from_utf8(bytes)
-                .map_err(|e| refused(Fault::NotText { offset: e.utf8_error().valid_up_to() }))?;
-            Imported::Curves(micromag::read_micromag(&Source { name, text })?)
-        }
-    };
+    refuse_without_effect(request, kind.takes(), &words)
+        .map_err(|fault| Problem::new(Place::file(&source.name), fault))?;
+    let which = (&request.columns, request.variable.as_deref());
+    let (imported, recognised) =
+        source.imported(which, Reading::Folder(request.kind), request.reduction())?;
     Ok(ReadSource { path: path.to_path_buf(), kind, recognised, imported })
+}
+
+impl OpenSource {
+    /// What it holds; also what was recognised, in words. `which`: its columns, and the variable of a MAT file.
+    fn imported(
+        self,
+        which: (&ColumnOptions, Option<&str>),
+        into: Reading,
+        reduction: Reduction,
+    ) -> Result<(Imported, String), Problems> {
+        let Self { name, kind, mut reader, packed } = self;
+        let refused = |fault| Problem::new(Place::file(&name), fault);
+        let recognised = format!("{}{packed}", kind.words());
+        if kind == SourceKind::Csv {
+            let opened = text::Opened::open(reader, &name)?;
+            let recognised = format!("{recognised}, {}", opened.words());
+            let table = text::read_csv(opened, &name, which.0, into, reduction)?;
+            return Ok((Imported::Record(Box::new(table)), recognised));
+        }
+        let bytes = read_at_most(&mut reader, LARGEST_WHOLE + 1);
+        let bytes = bytes.map_err(|e| refused(e.into()))?;
+        refuse_large(&bytes).map_err(refused)?;
+        let (table, taken) = match kind {
+            SourceKind::Mat => mat::read_mat(&bytes, &name, which, into, reduction)?,
+            SourceKind::Tdms => {
+                let found = tdms::read_tdms(&bytes).map_err(refused)?;
+                found.table(&name, which.0, into, reduction)?
+            }
+            SourceKind::Csv | SourceKind::MicromagForc => {
+                let text = String::from_utf8(bytes).map_err(|e| {
+                    refused(Fault::NotText { offset: e.utf8_error().valid_up_to() })
+                })?;
+                let curves = micromag::read_micromag(&Source { name: name.clone(), text })?;
+                return Ok((Imported::Curves(curves), recognised));
+            }
+        };
+        Ok((Imported::Record(Box::new(table)), format!("{recognised}, {taken}")))
+    }
 }
 
 fn read_at_most(reader: &mut (impl Read + ?Sized), most: u64) -> std::io::Result<Vec<u8>> {

@@ -1,7 +1,6 @@
 //! Measured tables: CSV with units in the header, channels, and the checks of a record.
 
 mod column_csv;
-mod even_record;
 mod loop_csv;
 mod measured_csv;
 mod point_csv;
@@ -12,7 +11,6 @@ mod text;
 mod units;
 
 pub use column_csv::{ColumnTable, parse_columns};
-pub use even_record::EvenRecord;
 pub use loop_csv::{ChannelFile, Channels};
 pub(crate) use loop_csv::{Declared, Rows, input_and_output, parse_loop_csv, parse_rows};
 pub(crate) use measured_csv::QUANTITIES;

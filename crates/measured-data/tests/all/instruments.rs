@@ -3,10 +3,10 @@
 #![expect(clippy::disallowed_methods, reason = "tests read fixtures and what was written")]
 #![expect(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
-use measured_data::Channel;
 #[cfg(feature = "hdf5")]
 use measured_data::import::read_variables;
 use measured_data::import::{ColumnOptions, ImportRequest, MOST_SAMPLES, import};
+use measured_data::{Channel, EvenRecord, Source};
 use std::path::{Path, PathBuf};
 
 /// Folders of recordings, each with its truth: fewest kinds in it, and fewest that go in without an option.
@@ -218,6 +218,61 @@ fn tried(of: &Path) -> (usize, usize, Vec<String>) {
         flaws.len()
     );
     (all.len(), inside, flaws)
+}
+
+/// What goes in without an option is a record of its own as well, with the numbers that the import writes.
+#[test]
+fn a_record_of_its_own_is_read_as_the_import_reads_it() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, ..) in FOLDERS {
+        let of = folder_of(name);
+        let mut read = 0;
+        for recording in recordings(&of) {
+            let out = folder.path().join(&recording.name);
+            let [file] = &recording.files[..] else { continue };
+            if imported(&recording, "", &out).is_err() {
+                continue;
+            }
+            let mut tables: Vec<PathBuf> =
+                std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path()).collect();
+            tables.retain(|path| path.extension().is_some_and(|e| e == "csv"));
+            let (header, rows) = table(&tables[0]);
+            let own = EvenRecord::open(file, &ColumnOptions::default(), None).unwrap();
+            assert_eq!(own.time_s.len(), rows.len(), "{}", recording.name);
+            for (column, beside) in [(1, 2), (2, 1)] {
+                let values = own.column(&header[column], &header[beside]).unwrap();
+                let values = values.unwrap_or_else(|| panic!("{}: {header:?}", recording.name));
+                let most = values.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+                for (own, row) in values.iter().zip(&rows) {
+                    assert!((own - row[column]).abs() <= 1e-6 * most, "{}", recording.name);
+                }
+            }
+            read += 1;
+        }
+        println!("{name}: {read} records of their own");
+        assert!(read >= 60, "{name}: {read}");
+    }
+}
+
+/// What a record of its own needs beside a time: a name, or one column of the quantity.
+#[test]
+fn columns_are_found_by_name_and_quantity() {
+    let read =
+        |text: &str| EvenRecord::read(&Source { name: "a.csv".into(), text: text.into() }).unwrap();
+    let own = read("time_ms;u_mV;weg_mm\n0;1000;0,001\n1;2000;0,002\n2;3000;0,003\n");
+    assert!((own.step_s - 1e-3).abs() < 1e-12);
+    assert_eq!(own.column("command_V", "displacement_um").unwrap().unwrap(), [1.0, 2.0, 3.0]);
+    assert_eq!(own.column("displacement_um", "command_V").unwrap().unwrap(), [1.0, 2.0, 3.0]);
+    // an output in volts is not the command
+    assert_eq!(own.column("sensor_V", "command_V").unwrap(), None);
+    assert_eq!(own.column("load_N", "command_V").unwrap(), None);
+    let two = read("time_s,a_V,command_V\n0,1,2\n1,1,3\n2,1,4\n");
+    assert_eq!(two.column("command_V", "displacement_um").unwrap().unwrap(), [2.0, 3.0, 4.0]);
+    let same = read("time_s,command_V,command_mV\n0,1,2\n1,1,3\n2,1,4\n");
+    let said = same.column("command_V", "displacement_um").unwrap_err().to_string();
+    assert!(said.contains("2 columns are called `command`"), "{said}");
+    let said = own.missing("load_N").to_string();
+    assert!(said.contains("`load_N` is missing") && said.contains("u_mV, weg_mm"), "{said}");
 }
 
 /// Workbooks and TDMS files that are cut off are refused; a flipped byte of a workbook is seen by its checksum, one of a

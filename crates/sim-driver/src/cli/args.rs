@@ -5,7 +5,7 @@ use super::sweep::{PageArgs, SweepAction};
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
 use crate::choices::model_parser;
-use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
+use crate::import::{ColumnOptions, ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use bench_study::identification::ModelChoice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -286,10 +286,13 @@ pub struct PredictArgs {
     /// Actuator file, from `hhc identify`.
     #[arg(value_name = "ACTUATOR.ron")]
     pub actuator: PathBuf,
-    /// Table with `time_s` and `command_V`; with `displacement_um` or `flap_deg` beside, the error is told. `-` is standard
-    /// input.
-    #[arg(long, value_name = "RECORD.csv")]
+    /// Record of time and command, in any format and units that `import` reads; with `displacement` or `flap_deg` beside, the
+    /// error is told. `-` is standard input.
+    #[arg(long, value_name = "RECORD")]
     pub input: PathBuf,
+    /// Which column is which.
+    #[command(flatten)]
+    pub columns: ColumnArgs,
     /// Table to write.
     #[arg(short, long, value_name = "OUT.csv")]
     pub output: Option<PathBuf>,
@@ -307,9 +310,13 @@ pub struct InvertArgs {
     /// Actuator file, from `hhc identify`.
     #[arg(value_name = "ACTUATOR.ron")]
     pub actuator: PathBuf,
-    /// Table with `time_s` and `displacement_um` or `flap_deg`: the motion that is wanted. `-` is standard input.
-    #[arg(long, value_name = "MOTION.csv")]
+    /// Record of time and `displacement` or `flap_deg`, in any format and units that `import` reads: the motion that is wanted.
+    /// `-` is standard input.
+    #[arg(long, value_name = "MOTION")]
     pub wanted: PathBuf,
+    /// Which column is which.
+    #[command(flatten)]
+    pub columns: ColumnArgs,
     /// Table to write.
     #[arg(short, long, value_name = "OUT.csv")]
     pub output: Option<PathBuf>,
@@ -382,6 +389,36 @@ pub struct ExportArgs {
     pub output: Option<PathBuf>,
 }
 
+/// What a recorder did not write into its file.
+#[derive(Debug, Clone, Args)]
+pub struct ColumnArgs {
+    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
+    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub columns: Option<String>,
+    /// Factors of columns whose recorder divided: `command=15,displacement=100`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub scale: Option<String>,
+    /// What to add to columns then, in their units: `displacement=-30000`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub offset: Option<String>,
+    /// Sampling frequency of files without a time column, Hz.
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub sampling_hz: Option<f64>,
+}
+
+impl ColumnArgs {
+    /// What they say about the columns.
+    pub fn options(&self) -> ColumnOptions {
+        ColumnOptions {
+            columns: self.columns.clone(),
+            scale: self.scale.clone(),
+            offset: self.offset.clone(),
+            ..ColumnOptions::default()
+        }
+    }
+}
+
 /// `hhc import`.
 #[derive(Debug, Clone, Args)]
 pub struct ImportArgs {
@@ -402,10 +439,9 @@ pub struct ImportArgs {
     /// goes before it.
     #[arg(long, value_name = "MAP.ron")]
     pub mapping: Option<PathBuf>,
-    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
-    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub columns: Option<String>,
+    /// Which column is which.
+    #[command(flatten)]
+    pub columns: ColumnArgs,
     /// Variable of a MAT file: bench.run(2).x, runs{3}.
     #[arg(long, value_name = "PATH")]
     pub variable: Option<String>,
@@ -418,12 +454,6 @@ pub struct ImportArgs {
     /// Units to convert into, for generic loops: `displacement_mm,force_N`.
     #[arg(long, value_name = "LIST")]
     pub convert: Option<String>,
-    /// Factors of columns whose recorder divided: `command=15,displacement=100`.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub scale: Option<String>,
-    /// What to add to columns then, in their units: `displacement=-30000`.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub offset: Option<String>,
     /// Flap angle per displacement of an actuator bench, deg/um.
     #[arg(long, value_name = "DEG", allow_negative_numbers = true)]
     pub deg_per_um: Option<f64>,
@@ -436,9 +466,6 @@ pub struct ImportArgs {
     /// Range of the command in V, or of the input in its unit: LOW,HIGH.
     #[arg(long, value_name = "LOW,HIGH", value_parser = range, allow_hyphen_values = true)]
     pub range: Option<(f64, f64)>,
-    /// Sampling frequency of files without a time column, Hz.
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub sampling_hz: Option<f64>,
     /// Average whole blocks of samples down to this sampling frequency, Hz.
     #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     pub reduce_to_hz: Option<f64>,

@@ -22,16 +22,14 @@ pub(super) fn import(args: &ImportArgs) -> Result<(), SimError> {
         source: args.source,
         kind: args.kind,
         columns: ColumnOptions {
-            columns: args.columns.clone(),
             input: args.input.clone(),
             response: args.response.clone(),
             convert: args.convert.clone(),
-            scale: args.scale.clone(),
-            offset: args.offset.clone(),
+            ..args.columns.options()
         },
         variable: args.variable.clone(),
         range: args.range,
-        sampling_hz: args.sampling_hz,
+        sampling_hz: args.columns.sampling_hz,
         reduce_to_hz: args.reduce_to_hz,
         most_samples: args.max_samples,
         title: args.title.clone(),

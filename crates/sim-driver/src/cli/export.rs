@@ -30,6 +30,11 @@ pub(super) fn export(args: &ExportArgs) -> Result<(), SimError> {
     if output.exists() {
         return Err(DataError::WouldOverwrite { path: output.clone() }.into());
     }
+    if !(args.sampling_hz.is_finite() && args.sampling_hz > 0.0) {
+        let remedy = "give the rate at which the step functions are called, or leave it out";
+        let fault = Fault::NotPositive { value: args.sampling_hz, unit: "Hz", remedy };
+        return Err(Problem::new(Place::file("--sampling-hz"), fault).into());
+    }
     let source = Source::read(&args.file)?;
     if args.what.is_some() && (is_actuator_file(&source) || args.to == ExportForm::C) {
         return Err(refused(

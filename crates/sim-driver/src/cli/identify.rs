@@ -1,14 +1,13 @@
 //! `hhc identify`.
 
-use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
+use super::args::{ColumnArgs, IdentifyArgs, InvertArgs, PredictArgs};
 use super::{ForceArgs, refuse_inputs, warn, write_texts};
 use crate::SimError;
-use crate::actuator_use::used;
+use crate::actuator_use::{Work, used};
 use crate::files::{DATASET, Folder, Source, read_dataset, refuse_inside, write_atomic};
 use crate::output::{Format, Printable, counted, print};
 use crate::problem::{Fault, Place, Problem};
 use crate::progress::Progress;
-use actuator_gap::{ActuatorUse, UseError};
 use bench_study::any_data::{FoundModel, identified_data};
 use bench_study::curves::CurvesResult;
 use bench_study::figures::figure_files;
@@ -18,7 +17,7 @@ use bench_study::identification::{
 use bench_study::page::{bench_page, curves_page};
 use bench_study::samples_csv;
 use bench_study::stored::{StoredActuator, actuator_warnings, read_actuator, write_actuator};
-use measured_data::{EvenRecord, default_model_file};
+use measured_data::default_model_file;
 use preisach_dyn::identify::{Family, Settings};
 use report_page::MADE_HERE;
 use std::path::{Path, PathBuf};
@@ -45,6 +44,11 @@ pub(super) fn identify(args: &IdentifyArgs) -> Result<(), SimError> {
         None => Settings::default(),
     };
     let output = &args.output.clone().unwrap_or_else(|| default_model_file(&args.bench));
+    if output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("html")) {
+        let message = "is the name of a page, expected that of an actuator file, such as actuator.ron: the page is written beside it";
+        let place = Place::file(output.display().to_string());
+        return Err(Problem::new(place, Fault::Other(message.to_owned())).into());
+    }
     refuse_inside(&args.bench, output)?;
     refuse_inputs(args.start.as_deref(), Some(output))?;
     let page_path = page_path(output);
@@ -124,7 +128,7 @@ fn page_path(model: &Path) -> Option<PathBuf> {
 pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
     put_to_work(
         (args.output.as_ref(), args.force),
-        [&args.actuator, &args.input],
+        ([&args.actuator, &args.input], &args.columns),
         args.format,
         StoredActuator::predicted,
     )
@@ -133,7 +137,7 @@ pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {
 pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
     put_to_work(
         (args.output.as_ref(), args.force),
-        [&args.actuator, &args.wanted],
+        ([&args.actuator, &args.wanted], &args.columns),
         args.format,
         StoredActuator::inverted,
     )
@@ -142,13 +146,15 @@ pub(super) fn invert(args: &InvertArgs) -> Result<(), SimError> {
 /// Uses an actuator on a record; writes and prints what it did.
 fn put_to_work(
     (output, force): (Option<&PathBuf>, ForceArgs),
-    [actuator, record]: [&PathBuf; 2],
+    ([actuator, record], columns): ([&PathBuf; 2], &ColumnArgs),
     format: Format,
-    of: fn(&StoredActuator, &EvenRecord) -> Result<ActuatorUse, UseError>,
+    of: Work,
 ) -> Result<(), SimError> {
     refuse_inputs(Some(actuator), output)?;
     refuse_inputs(Some(record), output)?;
-    let own = used([actuator, record], of)?;
+    let said = (&columns.options(), columns.sampling_hz);
+    let (own, warnings) = used([actuator, record], said, of)?;
+    warn(&warnings, Format::Details);
     if let Some(path) = output {
         let samples = samples_csv(&own);
         if own.error.is_some() {

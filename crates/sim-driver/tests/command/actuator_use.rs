@@ -1,6 +1,7 @@
 //! `hhc predict` and `hhc invert`.
 
 use crate::place::{Place, write_bench};
+use std::fmt::Write;
 use std::process::Command;
 
 /// A motion that does not repeat, within reach of the bench.
@@ -47,6 +48,47 @@ fn the_voltage_of_a_wanted_motion_moves_the_actuator_so() {
     assert!(place.read("flat_out.csv").starts_with("time_s,command_V,displacement_um\n"));
 }
 
+/// The same record as other recorders write it: other units, separators and decimals, no time, a monitor output.
+#[test]
+fn a_record_may_be_written_as_any_recorder_does() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    place.hhc(&["identify", "bench", "-o", "a.ron"]).done();
+    let (mut plain, mut other, mut untimed) = (
+        "time_s,command_V,displacement_um\n".to_owned(),
+        "Zeit [ms];Spannung [mV];Weg [mm]\n".to_owned(),
+        "monitor_V,displacement_um\n".to_owned(),
+    );
+    for k in 0..400 {
+        let t = 0.002 * f64::from(k);
+        let volt = 60.0 + 30.0 * ((40.0 * t).sin() + 0.4 * (93.0 * t).sin());
+        let um = 2.0 * volt;
+        writeln!(plain, "{t:.3},{volt:.3},{um:.3}").unwrap();
+        let row = format!("{:.0};{:.0};{:.6}", 1e3 * t, 1e3 * volt, 1e-3 * um);
+        writeln!(other, "{}", row.replace('.', ",")).unwrap();
+        writeln!(untimed, "{:.6},{um:.3}", volt / 15.0).unwrap();
+    }
+    place.write("plain.csv", &plain);
+    place.write("other.txt", &other);
+    place.write("untimed.csv", &untimed);
+    let error = |args: &[&str]| {
+        let told =
+            place.hhc(&[&["predict", "a.ron", "--format", "json", "--input"], args].concat());
+        told.json()["error"]["nrmse_percent"].as_f64().unwrap()
+    };
+    let expected = error(&["plain.csv"]);
+    assert!(expected > 1.0, "{expected}");
+    let columns = "command_V=monitor_V,displacement_um=displacement_um";
+    let said =
+        ["untimed.csv", "--columns", columns, "--scale", "command=15", "--sampling-hz", "500"];
+    for args in [&["other.txt"][..], &said] {
+        let found = error(args);
+        assert!((found - expected).abs() < 1e-3 * expected, "{args:?}: {found} {expected}");
+    }
+    let none = ["predict", "a.ron", "--input", "untimed.csv", "--sampling-hz", "0"];
+    place.hhc(&none).rejected(&["--sampling-hz", "0 Hz, expected a positive"]);
+}
+
 #[test]
 fn an_actuator_goes_out_into_other_languages() {
     let place = Place::new();
@@ -83,7 +125,7 @@ fn an_actuator_goes_out_into_other_languages() {
     let bad = ["export", "a.ron", "--to", "c", "--name", "2 flaps", "-o", "b"];
     place.hhc(&bad).rejected(&["a.ron", "2 flaps"]);
     let bad = ["export", "a.ron", "--to", "c", "--sampling-hz", "0", "-o", "b"];
-    place.hhc(&bad).rejected(&["a.ron", "time step"]);
+    place.hhc(&bad).rejected(&["--sampling-hz: is 0 Hz, expected a positive"]);
 }
 
 #[test]
@@ -101,11 +143,28 @@ fn records_that_do_not_serve_are_refused_at_their_place() {
     rejected(
         "uneven.csv",
         "time_s,command_V\n0,1\n1,2\n3,3\n",
-        &["uneven.csv:3: time_s", "evenly"],
+        &["uneven.csv:4: time_s", "expected uniform sampling"],
     );
-    rejected("one.csv", "time_s,command_V\n0,1\n", &["one.csv:2: time_s", "two or more"]);
-    rejected("none.csv", "time_s,volt\n0,1\n1,2\n", &["none.csv:1", "`command_V` is missing"]);
-    rejected("high.csv", "time_s,command_V\n0,1\n1,2e5\n", &["high.csv", "200000"]);
+    rejected("one.csv", "time_s,command_V\n0,1\n", &["one.csv: has 1 rows", "at least 3"]);
+    let none = [
+        "none.csv:1:1: the column `volt` has no known unit",
+        "--columns 'time_s=#1,command_V=volt'",
+    ];
+    rejected("none.csv", "time_s,volt\n0,1\n1,2\n2,3\n", &none);
+    // the option that is printed helps at once
+    place
+        .hhc(&["predict", "a.ron", "--input", "none.csv", "--columns", "time_s=#1,command_V=volt"])
+        .done();
+    rejected(
+        "force.csv",
+        "time_s,load_N\n0,1\n1,2\n2,3\n",
+        &["force.csv", "`command_V` is missing", "load_N"],
+    );
+    rejected(
+        "high.csv",
+        "time_s,command_V\n0,1\n1,2e5\n2,1\n",
+        &["high.csv", "200000", "--scale command=FACTOR"],
+    );
     place
         .hhc(&["predict", "a.ron", "--input", "high.csv", "-o", "high.csv"])
         .rejected(&["is a file this command reads"]);

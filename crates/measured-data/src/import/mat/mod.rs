@@ -16,7 +16,7 @@ mod write;
 
 use super::columns::ColumnOptions;
 use super::gather::Reduction;
-use super::{ImportKind, Table};
+use super::{Reading, Table};
 use crate::problem::{Fault, Place, Problem, Problems};
 
 use bytes::Bytes;
@@ -79,12 +79,12 @@ pub(super) fn read_mat(
     bytes: &[u8],
     file: &str,
     (options, variable): (&ColumnOptions, Option<&str>),
-    kind: Option<ImportKind>,
+    into: Reading,
     reduction: Reduction,
 ) -> Result<(Table, String), Problems> {
     let refused = |fault| Problem::new(Place::file(file), fault);
     let variables = read_variables(bytes).map_err(refused)?;
     let found = select::select(&variables, variable).map_err(refused)?;
     drop(variables);
-    found.table(file, options, kind, reduction)
+    found.table(file, options, into, reduction)
 }

@@ -207,7 +207,13 @@ fn a_record_with_units_of_its_own() {
     let reduction =
         Reduction { most_samples: 64, reduce_to_hz: None, sampling_hz: None, split: false };
     let read = |variable, options: &ColumnOptions| {
-        read_mat(&sample(true, true), "b.mat", (options, variable), None, reduction)
+        read_mat(
+            &sample(true, true),
+            "b.mat",
+            (options, variable),
+            Reading::Folder(None),
+            reduction,
+        )
     };
     let (table, taken) = read(Some("bench.run(1)"), &options).unwrap();
     assert_eq!(table.choice.labels(), ["time_s", "command_V", "displacement_um"]);

@@ -8,7 +8,7 @@ mod row;
 
 use super::columns::{ColumnOptions, choose, name_columns};
 use super::gather::Reduction;
-use super::{ImportKind, Table};
+use super::{Reading, Table};
 use crate::problem::{Fault, Place, Problem, Problems};
 use crate::tables::{Dimension, HeaderCell, TextTable};
 pub(super) use decode::{foreign, from_utf16, is_text, utf16};
@@ -137,7 +137,7 @@ pub(super) fn read_csv(
     opened: Opened<'_>,
     file: &str,
     options: &ColumnOptions,
-    kind: Option<ImportKind>,
+    into: Reading,
     reduction: Reduction,
 ) -> Result<Table, Problems> {
     let Opened { layout, rows } = opened;
@@ -149,7 +149,7 @@ pub(super) fn read_csv(
     let has_time = named.0.iter().any(|(_, channel)| channel.unit.dimension == Dimension::Time);
     let stated_hz = stated_hz.filter(|_| !has_time);
     let reduction = Reduction { sampling_hz: reduction.sampling_hz.or(stated_hz), ..reduction };
-    let choice = choose(named, options, kind, reduction.sampling_hz)
+    let choice = choose(named, options, into, reduction.sampling_hz)
         .map_err(|fault| Problem::new(place.clone(), fault))?;
     let cell = |i: usize| HeaderCell::new(own.map_or("", |own| &own[i]), place.clone());
     let header = (0..layout.width).map(cell).collect();

@@ -21,7 +21,7 @@ fn read_with(
     options: &ColumnOptions,
     reduction: Reduction,
 ) -> Result<Table, Problems> {
-    read_csv(Opened::open(reader, "r.csv")?, "r.csv", options, None, reduction)
+    read_csv(Opened::open(reader, "r.csv")?, "r.csv", options, Reading::Folder(None), reduction)
 }
 
 fn error(text: &str, columns: &str) -> String {
