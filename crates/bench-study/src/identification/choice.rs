@@ -45,7 +45,7 @@ pub struct Pick {
     /// Its parameters found by output error, as the fit holds them, with their standard deviations.
     pub parameters: Vec<Estimate>,
     /// Its row in the comparison; none if there was none.
-    row: Option<ModelRow>,
+    pub(super) row: Option<ModelRow>,
 }
 
 impl Pick {
@@ -192,5 +192,23 @@ mod tests {
         found.pick(None).unwrap();
         assert_eq!(found.pick.family, Family::PrandtlPlays);
         assert_eq!(found.better_held_out(), None);
+    }
+
+    /// The line of the model picked and what is said of its runs are of one fit, whatever order of its memory was chosen.
+    #[test]
+    fn the_table_and_the_headline_tell_one_error() {
+        let families = &[Family::Linear, Family::StaticPreisach];
+        let only = Some(Comparing { families, done: &|| () });
+        let mut found = identify_bench(&bench(), &Settings::default(), only).unwrap();
+        for choice in [None, Some(Family::StaticPreisach), Some(Family::Linear)] {
+            found.pick(choice).unwrap();
+            let summary = found.summary(None);
+            let line = summary.models.iter().find(|line| line.model == summary.model).unwrap();
+            let held_out =
+                summary.runs.iter().find(|run| run.use_as == RecordUse::HeldOut).unwrap();
+            let (of_line, of_run) = (line.held_out_percent.unwrap(), held_out.nrmse_percent);
+            assert!((of_line - of_run).abs() <= 1e-6 * of_run, "{choice:?}: {of_line} {of_run}");
+            assert_eq!(line.levels, summary.levels);
+        }
     }
 }

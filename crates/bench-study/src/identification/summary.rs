@@ -7,7 +7,7 @@ use measured_data::significant;
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{
     Channel, DensitySpread, Estimate, Family, Finding, LeftOut, MOST_UNEXPLAINED, ModelComparison,
-    NoiseSource, RecordUse, Refinement, Settings, Severity, Subject,
+    ModelRow, NoiseSource, RecordUse, Refinement, Settings, Severity, Subject,
 };
 use report_page::{Section, Sheet, counted, table};
 use serde::Serialize;
@@ -45,7 +45,10 @@ impl BenchIdentification {
             ),
             actuator: self.model.clone(),
             runs: self.fits.clone(),
-            models: self.comparison.as_ref().map_or_else(Vec::new, |t| model_lines(t, subject)),
+            models: self
+                .comparison
+                .as_ref()
+                .map_or_else(Vec::new, |table| model_lines(table, self.pick.row.as_ref(), subject)),
             left_out: self.comparison.as_ref().map_or(LeftOut::Nothing, |t| t.left_out),
             findings: self.findings(),
             density_determined: found.density_determined,
@@ -147,9 +150,15 @@ pub struct ModelLine {
     pub failure: Option<String>,
 }
 
-fn model_lines(table: &ModelComparison, subject: Subject<'_>) -> Vec<ModelLine> {
+/// The families of a comparison; that of the model picked in the order that was picked.
+fn model_lines(
+    table: &ModelComparison,
+    picked: Option<&ModelRow>,
+    subject: Subject<'_>,
+) -> Vec<ModelLine> {
     let percent = |v: f64| 100.0 * v;
-    let line = |(index, row): (usize, &preisach_dyn::identify::ModelRow)| {
+    let line = |(index, row): (usize, &ModelRow)| {
+        let row = picked.filter(|own| own.family == row.family).unwrap_or(row);
         let held_out = table.error_over(row, RecordUse::HeldOut);
         ModelLine {
             model: row.family.name().to_owned(),
