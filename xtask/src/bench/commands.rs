@@ -75,7 +75,7 @@ pub const BARE: Timing = Timing {
 };
 
 /// All commands that are timed.
-pub const TIMINGS: [Timing; 7] = [
+pub const TIMINGS: [Timing; 8] = [
     WAKE,
     CASE,
     Timing {
@@ -93,6 +93,13 @@ pub const TIMINGS: [Timing; 7] = [
         arguments: "fly fixtures/cases/flight_ramp.ron",
         bar_s: Some(20.0),
         is_of_rotor: false,
+        ..WAKE
+    },
+    Timing {
+        name: "how wrong T may be, and flights under noise, a wrong T and drift",
+        arguments: "run fixtures/cases/paper_mu030.ron --robustness",
+        bar_s: Some(60.0),
+        slow: true,
         ..WAKE
     },
     Timing {

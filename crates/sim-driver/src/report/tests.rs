@@ -7,10 +7,12 @@ use crate::results::{
     Baseline, BenchPart, ControlEnd, ControlHead, ControlRecord, FlapRecord, RunResult, SeriesLine,
     StoredResult, bench_loops, figures,
 };
+use crate::terminal::summary;
 use bench_study::identification::identify_bench;
 use preisach_dyn::identify::Settings;
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_study::{HubLoads, MarginLine, RobustnessCell, Sensitivity, SensitivityRecord};
+use std::path::Path;
 
 /// A result with every part, the loops from the shipped bench.
 fn example() -> StoredResult {
@@ -77,6 +79,14 @@ fn example() -> StoredResult {
 fn page_of(stored: &StoredResult) -> String {
     let figures = figures(&stored.result, &stored.setting().unwrap());
     report_html(&StudyReport { stored, figures: &figures })
+}
+
+#[test]
+fn the_screen_tells_how_wrong_t_may_be() {
+    let stored = example();
+    let figures = figures(&stored.result, &stored.setting().unwrap());
+    let told = summary(&StudyReport { stored: &stored, figures: &figures }, Path::new("out"));
+    assert!(told.contains("T at 3/rev: phase off by 76 deg diverges"), "{told}");
 }
 
 #[test]

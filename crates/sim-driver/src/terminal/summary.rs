@@ -60,6 +60,13 @@ pub(crate) fn summary(report: &StudyReport<'_>, folder: &Path) -> String {
             &format!("J at {}/rev moves most, by {by:+.1} points, with {}", set[0], row.assumption),
         );
     }
+    for line in report.stored.result.margins.iter().take(4) {
+        let [set, _, phase, gain, overshoot, flaps] = line.cells();
+        let text = format!(
+            "T at {set}: phase off by {phase} deg diverges, gain {gain}; J above J0 from {overshoot} deg, one flap alone {flaps}"
+        );
+        screen.labelled("May err", &text);
+    }
     let folder = folder.display();
     screen.labelled("Report", &format!("{folder}/report.html, numbers in {folder}/result.json"));
     screen.labelled("Details", &format!("every table: hhc report {folder} --details"));
