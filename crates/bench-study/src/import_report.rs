@@ -9,6 +9,15 @@ use report_page::{Sheet, counted, table};
 use serde::Serialize;
 use std::ops::Deref;
 
+/// Columns in a list; those without a name are counted.
+fn names(columns: &[String]) -> String {
+    let (named, unnamed): (Vec<&str>, Vec<&str>) =
+        columns.iter().map(String::as_str).partition(|name| !name.trim().is_empty());
+    let count = (!unnamed.is_empty()).then(|| format!("{} without a name", unnamed.len()));
+    let all: Vec<String> = named.into_iter().map(str::to_owned).chain(count).collect();
+    all.join(", ")
+}
+
 /// An import with its runs as they are read back.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ImportReport {
@@ -70,7 +79,7 @@ impl ImportReport {
                 .map(|c| vec![c.column.clone(), number_text(c.least), number_text(c.largest)]);
             sheet.block(&table(&["column", "smallest", "largest"], rows));
             if !run.left_out.is_empty() {
-                sheet.line(format_args!(" left out: {}", run.left_out.join(", ")));
+                sheet.line(format_args!(" left out: {}", names(&run.left_out)));
             }
         }
         if let Some((low, high)) = self.range {
@@ -100,4 +109,17 @@ fn amount(run: &ImportedRun) -> String {
 
 fn number_text(value: f64) -> String {
     significant(value, 6).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::names;
+
+    #[test]
+    fn columns_without_a_name_are_counted() {
+        let list = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+        assert_eq!(names(&list(&["load", "", " ", "gain"])), "load, gain, 2 without a name");
+        assert_eq!(names(&list(&["", ""])), "2 without a name");
+        assert_eq!(names(&list(&["load"])), "load");
+    }
 }

@@ -21,6 +21,12 @@ pub enum DataError {
         /// The file.
         path: PathBuf,
     },
+    /// A file of the data is in the way.
+    #[error("{} exists already, in the folder of the data, whose files are never replaced; name one elsewhere", .path.display())]
+    WouldOverwriteData {
+        /// The file.
+        path: PathBuf,
+    },
     /// A file is in the way that was not written by this program as what is to be written now.
     #[error("{} exists already and is no file of kind {kind}; name another to write, or replace it with --force", .path.display())]
     WouldOverwriteOther {

@@ -146,7 +146,7 @@ fn unknown(what: &'static str, found: &str, expected: &[&'static str]) -> Fault 
 
 fn wrong_type(message: &str) -> Fault {
     Fault::Other(format!(
-        "has the wrong type: {message}; write a value of the type shown by `hhc init`"
+        "has the wrong type: {message}; write one as the page of file formats shows it, of a case `hhc init` too"
     ))
 }
 

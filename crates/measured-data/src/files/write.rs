@@ -188,10 +188,10 @@ pub fn remove_own(path: &Path, is_own: impl Fn(&str) -> bool) -> Result<bool, Da
 /// Refuses to replace a file of a data folder with a result.
 ///
 /// # Errors
-/// [`DataError::WouldOverwrite`] if `path` is a file that lies directly in `data`.
+/// [`DataError::WouldOverwriteData`] if `path` is a file that lies directly in `data`.
 pub fn refuse_inside(data: &Path, path: &Path) -> Result<(), DataError> {
     if path.exists() && is_same(data, parent_of(path)) {
-        return Err(DataError::WouldOverwrite { path: path.to_path_buf() });
+        return Err(DataError::WouldOverwriteData { path: path.to_path_buf() });
     }
     Ok(())
 }

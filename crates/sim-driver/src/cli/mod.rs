@@ -32,7 +32,7 @@ use crate::progress::{is_quiet, set_quiet};
 use crate::sweep::at_advance_ratio;
 use clap::{Args, Parser};
 use std::fmt::Display;
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use study_text::known::Known;
@@ -104,11 +104,13 @@ pub fn execute(cli: &Cli) -> Result<(), SimError> {
     }
 }
 
-/// Prints warnings to standard error: short on one screen, whole with every table.
+/// Prints warnings to standard error: short on one screen, whole with every table and where no screen cuts them.
 fn warn<T: Display>(warnings: &[T], format: Format) {
     if is_quiet() {
         return;
     }
+    let is_screen = std::io::stderr().is_terminal();
+    let format = if is_screen { format } else { Format::Details };
     let text = warnings_text(warnings, format, "in the report, or with --details");
     if !text.is_empty() {
         say(&text.trim_end());

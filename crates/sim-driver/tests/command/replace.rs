@@ -61,7 +61,9 @@ fn a_record_is_no_prediction() {
     let run = place.read("bench/one_small.csv");
     place.write("bench/residual_spectrum.csv", &run);
     let into_data = [&identify[..], &["--figures", "bench", "--force"]].concat();
-    place.hhc(&into_data).rejected(&["bench/residual_spectrum.csv", "exists already"]);
+    place
+        .hhc(&into_data)
+        .rejected(&["bench/residual_spectrum.csv", "exists already, in the folder of the data"]);
     assert_eq!(place.read("bench/residual_spectrum.csv"), run);
     std::fs::remove_file(place.path().join("bench/residual_spectrum.csv")).unwrap();
     let record = place.read("bench/one_small.csv");
