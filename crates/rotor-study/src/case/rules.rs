@@ -80,7 +80,7 @@ fn check_wake(check: &mut Checker, wake: &FreeWakeValues, blades: usize) {
         );
         check.refuse(field, message);
     }
-    if let Some(sections) = wake.section_azimuths {
+    if let Some(sections) = wake.section_azimuths.filter(|_| (8..=144).contains(&azimuths)) {
         let is_multiple = sections.is_multiple_of(azimuths) && (azimuths..=360).contains(&sections);
         if !is_multiple || wake.choices().symmetry == WakeSymmetry::Axial {
             let message = format!(

@@ -177,6 +177,12 @@ fn the_choices_of_a_free_wake_are_read_and_checked() {
             "inflow.model.section_azimuths: is refused: 100 is no multiple of the 36 azimuth steps of a periodic wake up to 360; give 72, or leave it out",
         ),
         ("section_azimuths: 720", "give 360, or leave it out"),
+        // no multiple of what is refused itself is proposed
+        (
+            "azimuths: 400, section_azimuths: 400",
+            "inflow.model.azimuths: is 400, expected 8 to 144",
+        ),
+        ("azimuths: 0, section_azimuths: 36", "inflow.model.azimuths: is 0, expected 8 to 144"),
         ("turns: 0", "inflow.model.turns: is 0"),
         ("near_wake_deg: 0.0", "inflow.model.near_wake_deg: is 0"),
         ("core_r: NaN", "inflow.model.core_r: is NaN"),
