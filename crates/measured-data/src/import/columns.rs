@@ -39,7 +39,10 @@ pub struct ColumnOptions {
 
 /// The columns of a source that are named, before they are chosen from, and those left out because
 /// they have no known unit.
-type Named = (Vec<(usize, Channel)>, Vec<String>);
+type Named = (Numbered, Vec<String>);
+
+/// Columns with their numbers in the source, from 0.
+type Numbered = Vec<(usize, Channel)>;
 
 /// The columns of a bench.
 const USUAL: [&str; 3] = ["time_s", "command_V", "displacement_um"];
@@ -219,8 +222,8 @@ impl Choice {
 }
 
 /// The columns of the time, then the others.
-fn times_apart(columns: Vec<(usize, Channel)>) -> (Vec<(usize, Channel)>, Vec<(usize, Channel)>) {
-    let (mut times, mut data): (Vec<_>, Vec<_>) =
+fn times_apart(columns: Numbered) -> [Numbered; 2] {
+    let (mut times, mut data): (Numbered, Numbered) =
         columns.into_iter().partition(|(_, c)| c.is_time());
     if times.is_empty() {
         let is_one = |(_, c): &(usize, Channel)| c.unit.dimension == Dimension::Time;
@@ -228,7 +231,7 @@ fn times_apart(columns: Vec<(usize, Channel)>) -> (Vec<(usize, Channel)>, Vec<(u
             times.push(data.remove(at));
         }
     }
-    (times, data)
+    [times, data]
 }
 
 /// The time, s; none of a source that has a rate instead.
@@ -262,7 +265,7 @@ pub(super) fn choose(
     into: Reading,
     sampling_hz: Option<f64>,
 ) -> Result<Choice, Fault> {
-    let (times, mut data) = times_apart(columns);
+    let [times, mut data] = times_apart(columns);
     let (wanted, least) = match into {
         Reading::Folder(wanted) => (wanted, 2),
         Reading::Record => (None, 1),

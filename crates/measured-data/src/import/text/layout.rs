@@ -348,6 +348,12 @@ impl Layout {
         let names = if given { &preamble.names } else { names };
         let mut own: Vec<String> =
             (0..width).map(|i| names.get(i).cloned().unwrap_or_default()).collect();
+        // beside units alone the time may have its name: `time_s,V,um`
+        if let (true, [first, ..]) = (names.is_empty(), units)
+            && (is_time_word(first) || Channel::parse(first).is_some())
+        {
+            first.clone_into(&mut own[0]);
+        }
         let rises_by = |i: usize, step: f64| {
             let values: Vec<f64> = block.column(i).collect();
             let is_step = |w: &[f64]| ((w[1] - w[0]) / step - 1.0).abs() < 0.02;

@@ -57,6 +57,22 @@ fn separators_headers_and_units() {
     }
 }
 
+/// A header of units in which the time alone has its name: no name is lost, and the option printed holds the time.
+#[test]
+fn the_time_may_have_its_name_beside_units_alone() {
+    let rows = "\n0,1,10\n0.001,2,20\n0.002,3,40\n";
+    for head in ["time_s,V,um", "time_s,volts,micron", "Time [s],V,um"] {
+        let table = read(&format!("{head}{rows}"), "").unwrap();
+        assert_eq!(table.choice.labels(), ["time_s", "command_V", "displacement_um"], "{head}");
+    }
+    for head in ["t,V,um", "time,volt,mm"] {
+        let said = error(&format!("{head}{rows}"), "");
+        let name = head.split(',').next().unwrap();
+        let option = format!("time_s={name}");
+        assert!(said.contains(&option), "{head}: {said}");
+    }
+}
+
 #[test]
 fn a_file_without_time_needs_a_frequency() {
     let text = "u_V,x_um\n1,2\n2,3\n3,5\n";
