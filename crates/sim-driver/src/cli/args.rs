@@ -1,11 +1,11 @@
 //! The arguments of `hhc`.
 
-use super::ForceArgs;
 use super::sweep::{PageArgs, SweepAction};
+use super::{ColumnArgs, ForceArgs};
 use crate::case::{DynamicStallChoice, FreeWakeValues, InflowChoice};
 use crate::choices::choice_parser;
 use crate::choices::model_parser;
-use crate::import::{ColumnOptions, ImportKind, MOST_SAMPLES, SourceKind};
+use crate::import::{ImportKind, MOST_SAMPLES, SourceKind};
 use crate::output::Format;
 use bench_study::identification::ModelChoice;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -387,36 +387,6 @@ pub struct ExportArgs {
     /// Folder to write, never overwritten; name of the file and form, such as `ACTUATOR_c`, if left out.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
-}
-
-/// What a recorder did not write into its file.
-#[derive(Debug, Clone, Args)]
-pub struct ColumnArgs {
-    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
-    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub columns: Option<String>,
-    /// Factors of columns whose recorder divided: `command=15,displacement=100`.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub scale: Option<String>,
-    /// What to add to columns then, in their units: `displacement=-30000`.
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    pub offset: Option<String>,
-    /// Sampling frequency of files without a time column, Hz.
-    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
-    pub sampling_hz: Option<f64>,
-}
-
-impl ColumnArgs {
-    /// What they say about the columns.
-    pub fn options(&self) -> ColumnOptions {
-        ColumnOptions {
-            columns: self.columns.clone(),
-            scale: self.scale.clone(),
-            offset: self.offset.clone(),
-            ..ColumnOptions::default()
-        }
-    }
 }
 
 /// `hhc import`.

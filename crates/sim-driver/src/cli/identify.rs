@@ -1,7 +1,7 @@
 //! `hhc identify`.
 
-use super::args::{ColumnArgs, IdentifyArgs, InvertArgs, PredictArgs};
-use super::{ForceArgs, refuse_inputs, warn, write_texts};
+use super::args::{IdentifyArgs, InvertArgs, PredictArgs};
+use super::{ColumnArgs, ForceArgs, refuse_inputs, warn, write_texts};
 use crate::SimError;
 use crate::actuator_use::{Work, used};
 use crate::files::{DATASET, Folder, Source, read_dataset, refuse_inside, write_atomic};

@@ -26,6 +26,7 @@ use crate::choices::check_range;
 use crate::files::{
     refuse_foreign, refuse_input, refuse_inside, refuse_other_kind, refuse_other_text, write_atomic,
 };
+use crate::import::ColumnOptions;
 use crate::output::{Format, warnings_text};
 use crate::problem::Problems;
 use crate::progress::{is_quiet, set_quiet};
@@ -172,6 +173,36 @@ pub fn overridden(mut loaded: LoadedCase, inflow: Option<InflowOverride>) -> Loa
 /// Refuses to write to a file that is read, where both are given.
 fn refuse_inputs(read: Option<&Path>, written: Option<&PathBuf>) -> Result<(), SimError> {
     read.zip(written).map_or(Ok(()), |(read, written)| Ok(refuse_input(read, written)?))
+}
+
+/// What a recorder did not write into its file.
+#[derive(Debug, Clone, Args)]
+pub struct ColumnArgs {
+    /// Names and units of the columns: `time_s,displacement_um,command_V` in the order of the file, with
+    /// - for a column to leave out; or `NAME_UNIT=SOURCE` with a header, a MAT field or #number.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub columns: Option<String>,
+    /// Factors of columns whose recorder divided: `command=15,displacement=100`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub scale: Option<String>,
+    /// What to add to columns then, in their units: `displacement=-30000`.
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    pub offset: Option<String>,
+    /// Sampling frequency of files without a time column, Hz.
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
+    pub sampling_hz: Option<f64>,
+}
+
+impl ColumnArgs {
+    /// What they say about the columns.
+    pub fn options(&self) -> ColumnOptions {
+        ColumnOptions {
+            columns: self.columns.clone(),
+            scale: self.scale.clone(),
+            offset: self.offset.clone(),
+            ..ColumnOptions::default()
+        }
+    }
 }
 
 /// Leave to replace what is in the way.

@@ -142,18 +142,18 @@ fn records_that_do_not_serve_are_refused_at_their_place() {
     };
     rejected(
         "uneven.csv",
-        "time_s,command_V\n0,1\n1,2\n3,3\n",
-        &["uneven.csv:4: time_s", "expected uniform sampling"],
+        "time_s,command_V\n0,1\n1,2\n3,1\n",
+        &["uneven.csv:4:1: time_s", "expected uniform sampling"],
     );
     rejected("one.csv", "time_s,command_V\n0,1\n", &["one.csv: has 1 rows", "at least 3"]);
     let none = [
-        "none.csv:1:1: the column `volt` has no known unit",
-        "--columns 'time_s=#1,command_V=volt'",
+        "none.csv:1:1: the column `drive` has no known unit",
+        "--columns 'time_s=#1,command_V=drive'",
     ];
-    rejected("none.csv", "time_s,volt\n0,1\n1,2\n2,3\n", &none);
+    rejected("none.csv", "time_s,drive\n0,1\n1,2\n2,3\n", &none);
     // the option that is printed helps at once
     place
-        .hhc(&["predict", "a.ron", "--input", "none.csv", "--columns", "time_s=#1,command_V=volt"])
+        .hhc(&["predict", "a.ron", "--input", "none.csv", "--columns", "time_s=#1,command_V=drive"])
         .done();
     rejected(
         "force.csv",
