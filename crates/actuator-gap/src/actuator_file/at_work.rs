@@ -143,7 +143,7 @@ impl StoredActuator {
     /// What it does under the commands of a record; beside what was measured, where the record has it.
     ///
     /// # Errors
-    /// [`UseError`]: no command, blank cells, a command outside the range.
+    /// [`UseError`]: no command or two of its name, a command outside the range.
     pub fn predicted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
         let (input, output) = (self.input_column(), self.output_column());
         let command = record.column(&input, &output)?.ok_or_else(|| record.missing(&input))?;
@@ -172,7 +172,7 @@ impl StoredActuator {
     /// The voltage under which it moves as a record wants. A motion out of reach is no error: what is left of it is told.
     ///
     /// # Errors
-    /// [`UseError`]: no motion, blank cells, an actuator that does not move.
+    /// [`UseError`]: no motion or two of its name, an actuator that does not move.
     pub fn inverted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
         let (name, wanted, is_displacement) =
             output_of(self, record)?.ok_or_else(|| record.missing(&self.output_column()))?;
