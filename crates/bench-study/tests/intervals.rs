@@ -1,23 +1,24 @@
 //! Intervals of physical quantities hold the truth in every family that gets some.
 #![allow(clippy::unwrap_used, reason = "a test stops at what it does not expect")]
 
-use bench_study::identification::{CONFIRMED, known_quantities};
+use bench_study::identification::known_quantities;
 use model_gap::SplitMix;
 use preisach_dyn::identify::{
     BenchRecord, Candidates, Family, FlapZero, Settings, compare_models, quantities,
 };
 use preisach_dyn::{
-    ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters, Calibration,
-    DynamicParameters, DynamicPreisach, Envelope, Lag, LinearGain, LinkageStage, LogCreep, PlayMap,
-    PrandtlIshlinskii, PrandtlParameters, PrandtlStop, PreisachGrid, RateForm, Relaxation,
-    RelaxationElement, Resonance, StaticPreisach, StopParameters, TimeOrder, VoltageRange,
-    WeightedPlay, WeightedStop,
+    Accommodation, ActuatorLaw, ActuatorModel, AmplifierStage, BoucWen, BoucWenParameters,
+    Calibration, DynamicParameters, DynamicPreisach, Envelope, HystereticOscillator, Lag,
+    LinearGain, LinkageStage, LogCreep, OscillatorParameters, PlayMap, PrandtlIshlinskii,
+    PrandtlParameters, PrandtlStop, PreisachGrid, RateForm, Relaxation, RelaxationElement,
+    Resonance, StaticPreisach, StopParameters, TimeOrder, VoltageRange, WeightedPlay, WeightedStop,
 };
 use std::f64::consts::TAU;
 
-const SEEDS: u64 = 20;
-/// Truths that 95 % intervals hold at least.
-const LEAST_HELD: u64 = 17;
+/// Benches of each family, if the variable of this name does not say another number.
+const SEEDS: (&str, u64) = ("INTERVAL_SEEDS", 8);
+/// Percent of the truths that 95 % intervals hold at least.
+const LEAST_HELD_PERCENT: u64 = 85;
 const LEVELS: usize = 8;
 /// Noise over the stroke of about 20 deg: 0.4 %.
 const NOISE_DEG: f64 = 0.08;
@@ -124,12 +125,26 @@ fn truths() -> Vec<(Family, ActuatorModel)> {
     let creep = LinkageStage::LogCreep(LogCreep::new(0.013));
     let elements = vec![RelaxationElement { share: 0.95, time_constant_s: 0.02 }];
     let relaxation = LinkageStage::Relaxation(Relaxation { elements });
+    let late = LinkageStage::Accommodation(Accommodation { share: 0.1, travel_um: 6.0 });
+    let layered = with_stage(with_stage(preisach(), late), relaxation);
+    let oscillator = HystereticOscillator::new(OscillatorParameters {
+        range_volt: range(),
+        gain_deg_per_volt: 0.12,
+        frequency_hz: 30.0,
+        damping_ratio: 0.04,
+        hysteretic_share: 0.4,
+        loading_per_deg: 0.1,
+        unloading_per_deg: 0.1,
+        offset_deg: 0.0,
+    });
+    let oscillator = actuator(ActuatorLaw::HystereticOscillator(oscillator.unwrap()));
     let mode = LinkageStage::Resonance(Resonance { frequency_hz: 30.0, damping_ratio: 0.05 });
     vec![
         (Family::Linear, line),
         (Family::LinearLag, lag),
         (Family::BoucWen, bouc_wen()),
         (Family::BoucWenMode, with_stage(bouc_wen(), mode.clone())),
+        (Family::HystereticOscillator, oscillator),
         (Family::PrandtlPlays, plays(0.0)),
         (Family::PrandtlIshlinskii, plays(2e-3)),
         (Family::PrandtlStop, stops()),
@@ -138,8 +153,8 @@ fn truths() -> Vec<(Family, ActuatorModel)> {
         (Family::StaticPreisachMode, with_stage(preisach(), mode)),
         (Family::DynamicPreisachFirst, dynamic(TimeOrder::First)),
         (Family::DynamicPreisach, dynamic(TimeOrder::Second)),
-        (Family::DynamicPreisachCreep, with_stage(dynamic(TimeOrder::Second), creep)),
-        (Family::StaticPreisachRelaxation, with_stage(preisach(), relaxation)),
+        (Family::DynamicPreisachCreep, with_stage(dynamic(TimeOrder::Second), creep.clone())),
+        (Family::StaticPreisachRelaxation, with_stage(layered, creep)),
     ]
 }
 
@@ -168,13 +183,19 @@ fn bench(truth: &ActuatorModel, seed: u64) -> Vec<BenchRecord> {
     RUNS.map(record).into()
 }
 
+#[expect(clippy::disallowed_methods, reason = "how many benches are tried is asked, no result")]
+fn seeds() -> u64 {
+    std::env::var(SEEDS.0).map_or(SEEDS.1, |text| text.parse().unwrap())
+}
+
 #[test]
 fn intervals_hold_the_truth_in_every_family() {
+    let seeds = seeds();
+    let least_held = LEAST_HELD_PERCENT * seeds / 100;
     let mut wrong = Vec::new();
-    let (confirmed, others): (Vec<_>, Vec<_>) =
-        truths().into_iter().partition(|(family, _)| CONFIRMED.contains(family));
-    assert_eq!((confirmed.len(), others.len()), (CONFIRMED.len(), 4));
-    for (family, truth) in confirmed {
+    let truths = truths();
+    assert_eq!(truths.iter().map(|own| own.0).collect::<Vec<_>>(), Family::ALL);
+    for (family, truth) in truths {
         let settings = Settings {
             range_volt: range(),
             levels: LEVELS,
@@ -187,7 +208,7 @@ fn intervals_hold_the_truth_in_every_family() {
         let expected = quantities(&truth, [-15.0, 145.0]);
         let mut held = vec![0; expected.len()];
         let mut widths = vec![0.0; expected.len()];
-        for seed in 0..SEEDS {
+        for seed in 0..seeds {
             let records = bench(&truth, seed + 1);
             let table = compare_models(&records, &settings, &candidates, &|| ()).unwrap();
             let known = known_quantities(&table, &table.rows[0], &records, &settings);
@@ -195,18 +216,19 @@ fn intervals_hold_the_truth_in_every_family() {
                 let own = known.iter().find(|own| own.quantity.name == of_truth.name).unwrap();
                 let [low, high] = own.interval.unwrap();
                 held[k] += u64::from((low..=high).contains(&of_truth.value));
-                widths[k] += (high - low) / SEEDS as f64;
+                widths[k] += (high - low) / seeds as f64;
             }
         }
         for ((own, held), width) in expected.iter().zip(held).zip(widths) {
             let words = format!(
-                "{}, {}: truth {:.4}, mean width {width:.4}, held in {held} of {SEEDS}",
+                "{}, {}: truth {:.4}, mean width {width:.4}, held in {held} of {seeds}",
                 family.name(),
                 own.name,
                 own.value
             );
             println!("{words}");
-            if held < LEAST_HELD || width > own.value.abs() {
+            // not so wide that they say nothing
+            if held < least_held || width > 1.5 * own.value.abs() {
                 wrong.push(words);
             }
         }

@@ -3,9 +3,10 @@
 use model_gap::NoiseDraw;
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::{
-    BenchRecord, Family, ModelComparison, ModelRow, Quantity, RecordUse, Settings, quantities,
+    BenchRecord, ModelComparison, ModelRow, Quantity, RecordUse, Settings, quantities,
 };
 use rayon::prelude::*;
+use rotor_base::mean_square;
 
 /// Times the residuals are drawn: a deviation is then known to 16 %.
 const DRAWS: u64 = 20;
@@ -16,39 +17,28 @@ const PARTS: usize = 16;
 /// Least samples of a block.
 const LEAST_BLOCK: usize = 8;
 
-/// Families whose intervals held the truth in 17 of 20 benches at least, every quantity of them. The others, a static map
-/// fitted in rounds with stages behind it or a law before creep, held as few as 10, and those of the deviations of their own
-/// searches as few as 3: they get none.
-pub const CONFIRMED: [Family; 10] = [
-    Family::Linear,
-    Family::LinearLag,
-    Family::BoucWen,
-    Family::BoucWenMode,
-    Family::PrandtlPlays,
-    Family::PrandtlIshlinskii,
-    Family::PrandtlStop,
-    Family::StaticPreisach,
-    Family::DynamicPreisachFirst,
-    Family::DynamicPreisach,
-];
+/// Parts of the smoothness of a density that are tried: its own, less and more.
+const SMOOTHNESS: [f64; 3] = [1.0, 0.1, 10.0];
 
 /// A physical quantity with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct KnownQuantity {
     /// The quantity.
     pub quantity: Quantity,
-    /// Ends of the interval; none where the family is not [`CONFIRMED`] or fits to drawn residuals failed.
+    /// Ends of the interval; none where fits to drawn residuals failed.
     pub interval: Option<[f64; 2]>,
 }
 
 /// The physical quantities of a fitted model with intervals.
 ///
 /// ```text
-/// y* = y_model + blocks of (y - y_model) drawn anew,   deviation^2 = mean (q* - q)^2 over 20 draws,   q +- 2.09 deviation
+/// y* = y_model + blocks of (y - y_model) drawn anew,   q +- 2.09 sqrt( mean (q* - q)^2 over 20 draws + b^2 )
+/// b  = max( |q_(s/10) - q_s|, |q_(10 s) - q_s| )
 /// ```
 /// The model is fitted to each `y*` as it was to `y`. Blocks are a sixteenth of a record, from anywhere in it: what the model
-/// misses keeps its colour up to that length. The bias that a fit has where its own model is the truth, by smoothness for
-/// instance, is part of the deviation. The same for the same records: the draws are seeded.
+/// misses keeps its colour up to that length. The same for the same records: the draws are seeded.
+/// `q_s` is the quantity at the smoothness `s` of the density. Its bias hardly shows in the draws, whose truth is the smooth density
+/// itself: `b` is what a tenth or tenfold of it changes.
 ///
 /// Assumes: what is left is stationary over a record. Not in it: how far the truth lies outside the family.
 /// Source: H. R. Kuensch, *The jackknife and the bootstrap for general stationary observations*, Annals of Statistics 17
@@ -65,19 +55,27 @@ pub fn known_quantities(
     let trains: Vec<bool> = table.records.iter().map(|own| own.1 == RecordUse::Train).collect();
     let swing_volt = swing(records, &trains);
     let found = quantities(&fitted.model, swing_volt);
-    let draw = |seed: u64| -> Option<Vec<f64>> {
-        let drawn = drawn(&fitted.model, table.zero_deg, records, &trains, seed)?;
-        let model = table.refitted(row, &drawn, settings).ok()?;
-        Some(quantities(&model, swing_volt).iter().map(|own| own.value).collect())
+    let refitted = |row: &ModelRow, records: &[BenchRecord]| -> Option<Vec<f64>> {
+        let model = table.refitted(row, records, settings).ok()?;
+        let own = quantities(&model, swing_volt);
+        (own.len() == found.len()).then(|| own.iter().map(|own| own.value).collect())
     };
-    let count = if CONFIRMED.contains(&row.family) { DRAWS } else { 0 };
-    let draws: Vec<Option<Vec<f64>>> = (0..count).into_par_iter().map(draw).collect();
-    let whole = |own: &Vec<f64>| own.len() == found.len();
-    let draws: Option<Vec<Vec<f64>>> = draws.into_iter().map(|own| own.filter(whole)).collect();
+    let draw =
+        |seed: u64| refitted(row, &drawn(&fitted.model, table.zero_deg, records, &trains, seed)?);
+    let draws: Vec<Option<Vec<f64>>> = (0..DRAWS).into_par_iter().map(draw).collect();
+    let draws: Option<Vec<Vec<f64>>> = draws.into_iter().collect();
+    let smoothness = SMOOTHNESS.map(|part| {
+        let mut row = row.clone();
+        row.order.static_smoothness *= part;
+        refitted(&row, records)
+    });
     let interval = |(k, own): (usize, &Quantity)| {
-        let draws = draws.as_ref()?;
-        let squares: f64 = draws.iter().map(|drawn| (drawn[k] - own.value).powi(2)).sum();
-        let half = HALF * (squares / draws.len() as f64).sqrt();
+        let (draws, [smooth, less, more]) = (draws.as_ref()?, &smoothness);
+        let off: Vec<f64> = draws.iter().map(|drawn| drawn[k] - own.value).collect();
+        let there = smooth.as_ref()?[k];
+        let change = |other: &Option<Vec<f64>>| Some((other.as_ref()?[k] - there).abs());
+        let bias = change(less)?.max(change(more)?);
+        let half = HALF * (mean_square(&off) + bias * bias).sqrt();
         half.is_finite().then_some([own.value - half, own.value + half])
     };
     let pairs = found.iter().enumerate();

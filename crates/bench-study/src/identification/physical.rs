@@ -1,7 +1,7 @@
 //! Parameters in physical terms: what a search calls `ln gain` as a gain with its 95 % interval.
 
-use super::{CONFIRMED, KnownQuantity};
-use preisach_dyn::identify::{Estimate, Family, QuantityUnit};
+use super::KnownQuantity;
+use preisach_dyn::identify::{Estimate, QuantityUnit};
 use preisach_dyn::{ActuatorLaw, ActuatorModel};
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ pub struct PhysicalParameter {
     pub unit: String,
     /// Its value.
     pub value: f64,
-    /// Ends of its 95 % interval; none if the records do not determine it, or the family of the model is not [`CONFIRMED`].
+    /// Ends of its 95 % interval; none if the records do not determine it.
     pub interval: Option<[f64; 2]>,
     /// What else is to be known of the interval: where it comes from, that it reaches a bound.
     pub remark: Option<&'static str>,
@@ -123,20 +123,15 @@ fn reading(name: &str) -> Option<Reading> {
             |x| (100.0 * x * x).min(50.0),
             [0.0, 50.0],
         ),
-        "ln travel of the accommodation over the stroke" => {
-            plain("travel of the accommodation", Of::Word("strokes"), f64::exp, FREE)
-        }
         _ => return None,
     })
 }
 
 /// What a model says in physical terms: the parameters of its search that have a meaning, and its quantities. Where both have
-/// a name, the wider interval stands. Numbers of a shape are left out. A family that is not [`CONFIRMED`] gets no interval, of
-/// neither kind.
+/// a name, the wider interval stands. Numbers of a shape are left out.
 pub(super) fn physical(
     estimates: &[Estimate],
     known: &[KnownQuantity],
-    family: Family,
     model: &ActuatorModel,
     units: [&str; 2],
 ) -> Vec<PhysicalParameter> {
@@ -153,16 +148,6 @@ pub(super) fn physical(
                 }
             }
             None => all.push(own),
-        }
-    }
-    if !CONFIRMED.contains(&family) {
-        for own in &mut all {
-            own.interval = None;
-            own.remark = Some(match own.remark {
-                Some(TIED) => "tied to its usual value; no interval is confirmed for this model",
-                Some(AT_BOUND) => "at its bound; no interval is confirmed for this model",
-                _ => "no interval is confirmed for this model",
-            });
         }
     }
     all
@@ -255,7 +240,7 @@ mod tests {
             KnownQuantity { quantity: lag, interval: Some([-0.01, 0.03]) },
             KnownQuantity { quantity: stroke, interval: Some([-21.0, -19.0]) },
         ];
-        let found = physical(&estimates, &[], Family::LinearLag, &model, ["V", "deg"]);
+        let found = physical(&estimates, &[], &model, ["V", "deg"]);
         let own = gain(&model).unwrap();
         assert_eq!((found[0].value, found[0].unit.as_str()), (own, "deg/V"));
         let [low, high] = found[0].interval.unwrap();
@@ -267,36 +252,9 @@ mod tests {
         assert_eq!(found[3].remark, Some("at its bound"));
         // a shape has no physical value; of two intervals the wider one stands
         assert_eq!(found.len(), 4);
-        let found = physical(&estimates, &known, Family::LinearLag, &model, ["V", "deg"]);
+        let found = physical(&estimates, &known, &model, ["V", "deg"]);
         assert_eq!(found[1].interval, Some([0.0, 0.03]));
         assert_eq!((found[4].name.as_str(), found[4].unit.as_str()), ("stroke", "deg"));
         assert_eq!(found[4].interval, Some([-21.0, -19.0]));
-    }
-
-    #[test]
-    fn a_family_without_confirmed_intervals_gets_none_and_says_so() {
-        let model = ActuatorModel::linear(VoltageRange::amplified_stack(), 10.0, 0.04);
-        let estimates = [
-            estimate("ln natural frequency, Hz", 30.0_f64.ln(), 0.001),
-            Estimate { usual_share: 0.9, ..estimate("share at once, logit", -1.0, 0.1) },
-            estimate("creep per decade, logit", -20.0, 0.5),
-        ];
-        let quantity = Quantity { name: "stroke", unit: QuantityUnit::Output, value: 20.0 };
-        let known = [KnownQuantity { quantity, interval: Some([19.0, 21.0]) }];
-        let of = |family| physical(&estimates, &known, family, &model, ["V", "deg"]);
-        assert!(of(Family::StaticPreisach).iter().all(|own| own.interval.is_some()));
-        let found = of(Family::StaticPreisachMode);
-        assert_eq!(found.len(), 4);
-        assert!((found[0].value - 30.0).abs() < 1e-12);
-        let begins = [
-            "no interval",
-            "tied to its usual value; no interval",
-            "at its bound; no interval",
-            "no interval",
-        ];
-        for (own, begin) in found.iter().zip(begins) {
-            assert_eq!(own.interval, None, "{own:?}");
-            assert!(own.remark.unwrap().starts_with(begin), "{own:?}");
-        }
     }
 }

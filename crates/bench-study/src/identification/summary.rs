@@ -39,7 +39,6 @@ impl BenchIdentification {
             physical: physical(
                 &self.pick.parameters,
                 &self.known_quantities(),
-                self.pick.family,
                 &self.model,
                 subject.units(),
             ),

@@ -113,6 +113,8 @@ pub fn quantities(model: &ActuatorModel, swing_volt: [f64; 2]) -> Vec<Quantity> 
             }
             LinkageStage::Accommodation(stage) => {
                 put("share of the accommodation", QuantityUnit::Percent, 100.0 * stage.share);
+                let travel_deg = stage.travel_um * model.calibration.deg_per_um.abs();
+                put("travel of the accommodation", QuantityUnit::Output, travel_deg);
             }
             LinkageStage::Resonance(mode) => {
                 put("natural frequency of the mode", QuantityUnit::Hertz, mode.frequency_hz);
