@@ -2,8 +2,9 @@
 //! reversal and dose of drive. Each shows a kind of cause: slopes over amplitude and frequency, flat
 //! tops, creep, heat.
 
-use crate::numbers::{mean, range};
+use crate::numbers::range;
 use model_gap::{HarmonicFit, Sine};
+use rotor_base::mean;
 use std::fmt::Write;
 
 /// Harmonics of a table.

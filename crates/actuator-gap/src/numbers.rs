@@ -1,9 +1,4 @@
-//! Numbers of a record: mean, range, slope.
-
-/// Mean of values; 0 of none.
-pub(crate) fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len().max(1) as f64
-}
+//! Numbers of a record: range, slope.
 
 /// Least and largest of values.
 pub(crate) fn range<'v>(values: impl IntoIterator<Item = &'v f64>) -> (f64, f64) {

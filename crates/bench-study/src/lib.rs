@@ -32,6 +32,8 @@ pub mod page;
 pub mod reversals;
 pub mod spectra;
 pub mod stored;
+#[cfg(test)]
+mod test_bench;
 
 pub use actuator_use::{samples_csv, use_text};
 pub use beside::{compared, glances};

@@ -1,7 +1,7 @@
 //! The misfit of one record.
 
 use crate::{GapError, error};
-use rotor_base::mean_square;
+use rotor_base::{mean, mean_square};
 
 /// How far a simulated record is from the measured one.
 ///
@@ -44,9 +44,4 @@ pub(crate) fn compared(measured: &[f64], simulated: &[f64]) -> Result<(Vec<f64>,
     }
     let residual = measured.iter().zip(simulated).map(|(m, s)| m - s).collect();
     Ok((residual, rotor_base::variance(measured)))
-}
-
-/// Mean of the values of a record.
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }

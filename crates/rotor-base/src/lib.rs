@@ -32,7 +32,7 @@ pub use quadrature::{LagrangeBasis, QuadratureRule, gauss_legendre, gauss_lobatt
 pub use record_use::RecordUse;
 pub use rests::rests;
 pub use scales::RotorScales;
-pub use stats::{mean_square, significant, variance};
+pub use stats::{mean, mean_square, significant, variance};
 
 /// The example of the crate's README, run as a documentation test.
 #[cfg(doctest)]

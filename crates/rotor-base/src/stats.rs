@@ -1,4 +1,9 @@
-//! Means of squares.
+//! Means of values and squares.
+
+/// Mean of values, in their unit; 0 of none.
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
 
 /// Mean of the squares of values, in their unit squared; 0 of none.
 pub fn mean_square(values: &[f64]) -> f64 {
@@ -7,7 +12,7 @@ pub fn mean_square(values: &[f64]) -> f64 {
 
 /// Variance of values about their mean, in their unit squared; 0 of none.
 pub fn variance(values: &[f64]) -> f64 {
-    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    let mean = mean(values);
     values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len().max(1) as f64
 }
 

@@ -1,9 +1,10 @@
 //! What measured runs contain: what a cause is judged observable by.
 
-use crate::numbers::{mean, range};
+use crate::numbers::range;
 use crate::record::{Record, slower};
 use measured_data::Accuracy;
 use model_gap::Sine;
+use rotor_base::mean;
 
 /// What the measured runs of a diagnosis contain.
 #[derive(Debug, Clone, PartialEq)]

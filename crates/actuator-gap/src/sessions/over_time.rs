@@ -1,11 +1,11 @@
 //! Gain and zero of the reading from run to run, against the time of the session.
 
 use crate::base::BaseModel;
-use crate::numbers::{less, mean, slope};
+use crate::numbers::{less, slope};
 use crate::record::Record;
 use model_gap::discovery::Reason;
 use model_gap::student_exceeded;
-use rotor_base::variance;
+use rotor_base::{mean, variance};
 
 /// Fewest runs that show a change with time.
 const LEAST_RUNS: usize = 5;

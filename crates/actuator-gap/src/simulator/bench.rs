@@ -3,13 +3,13 @@
 use super::response::{Plant, Response, highest_mode_hz, line};
 use crate::base::{BaseModel, white_noise};
 use crate::causes::{BenchCause, Command, chain_under, reads_load};
-use crate::numbers::{less, mean, slope};
+use crate::numbers::{less, slope};
 use crate::record::Record;
 use measured_data::Accuracy;
 use model_gap::discovery::{Signal, Simulator, TraceRole};
 use model_gap::{Effect, GapError};
 use preisach_dyn::LinkageStage;
-use rotor_base::variance;
+use rotor_base::{mean, variance};
 
 /// Most samples of all traces together; longer sets are averaged in blocks.
 const MOST_SAMPLES: usize = 60_000;

@@ -88,9 +88,13 @@ impl BenchIdentification {
     /// models that could; those of [`super::identify_bench`].
     pub fn pick(&mut self, choice: ModelChoice) -> Result<(), BenchError> {
         let Some(table) = &self.comparison else { return Ok(()) };
+        let best = table.best();
         let chosen = match choice {
-            Some(family) => table.rows.iter().find(|row| row.family == family),
-            None => table.best(),
+            // the order of its memory that was chosen, where one was
+            Some(family) => best
+                .filter(|row| row.family == family)
+                .or_else(|| table.rows.iter().find(|row| row.family == family)),
+            None => best,
         };
         let place = || dataset_place(&self.heading.folder);
         let row = chosen.cloned();
@@ -136,41 +140,19 @@ impl BenchIdentification {
 mod tests {
     use super::super::{Comparing, identify_bench};
     use super::*;
-    use measured_data::{Accuracy, BenchData, MeasuredTable, Run, RunFile};
-    use std::f64::consts::TAU;
+    use crate::test_bench::PlaysBench;
+    use measured_data::BenchData;
 
-    /// A large and a small slow sine that train and one between them that does not, through plays.
+    /// A large and a small run that train and one between them that does not.
     fn bench() -> BenchData {
-        let run = |(volt, use_as): (f64, RecordUse)| {
-            let time_step_s = 0.01;
-            let input: Vec<f64> =
-                (0..1500).map(|i| 70.0 + volt * (TAU * f64::from(i) / 500.0).sin()).collect();
-            let mut plays = [70.0_f64; 3];
-            let at = |u: &f64| {
-                let mut y = *u;
-                for (play, half_width) in plays.iter_mut().zip([5.0, 15.0, 30.0]) {
-                    *play = play.min(u + half_width).max(u - half_width);
-                    y += 0.3 * *play;
-                }
-                y
-            };
-            let output = input.iter().map(at).collect();
-            let time_s = (0..1500).map(|i| time_step_s * f64::from(i)).collect();
-            let (id, use_as) = (format!("{volt} V"), Some(use_as));
-            let table = MeasuredTable { time_s, time_step_s, input, output, ..Default::default() };
-            Run { entry: RunFile { id, use_as, ..RunFile::default() }, table }
-        };
         let (train, held_out) = (RecordUse::Train, RecordUse::HeldOut);
-        BenchData {
-            title: String::new(),
-            folder: "bench".into(),
-            runs: [(50.0, train), (12.0, train), (25.0, held_out)].map(run).to_vec(),
-            flap_deg_per_um: Some(1.0),
-            command_range_volt: (20.0, 120.0),
-            accuracy: Accuracy::default(),
-            warnings: vec![],
-            content_hash: String::new(),
+        PlaysBench {
+            runs: &[(50.0, train), (12.0, train), (25.0, held_out)],
+            half_widths_volt: &[5.0, 15.0, 30.0],
+            after_zero: false,
+            noise_um: 0.0,
         }
+        .data()
     }
 
     /// Said of a line beside plays, not of plays beside a line.
@@ -194,14 +176,18 @@ mod tests {
         assert_eq!(found.better_held_out(), None);
     }
 
-    /// The line of the model picked and what is said of its runs are of one fit, whatever order of its memory was chosen.
+    /// The line of the model picked and what is said of its runs are of one fit, whatever order of its memory was chosen; a
+    /// family asked for by its name has the order that was chosen for it.
     #[test]
     fn the_table_and_the_headline_tell_one_error() {
         let families = &[Family::Linear, Family::StaticPreisach];
         let only = Some(Comparing { families, done: &|| () });
         let mut found = identify_bench(&bench(), &Settings::default(), only).unwrap();
+        let usual = Order::of(&Settings::default());
         for choice in [None, Some(Family::StaticPreisach), Some(Family::Linear)] {
             found.pick(choice).unwrap();
+            // of the usual order both would agree in any case
+            assert_eq!(found.pick.order != usual, choice != Some(Family::Linear), "{choice:?}");
             let summary = found.summary(None);
             let line = summary.models.iter().find(|line| line.model == summary.model).unwrap();
             let held_out =

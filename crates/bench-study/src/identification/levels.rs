@@ -4,6 +4,7 @@ use super::BenchIdentification;
 use crate::BenchError;
 use measured_data::limits;
 use preisach_dyn::identify::{Finding, RecordUse};
+use rotor_base::{mean, mean_square, variance};
 
 /// Least share of what a model leaves that levels are, its least size in standard deviations of the noise, and the least
 /// difference of levels over the largest range of an output, percent.
@@ -30,9 +31,8 @@ impl BenchIdentification {
             let measured = &record.output_deg[judged.clone()];
             let pairs = ours[judged].iter().zip(measured);
             let errors: Vec<f64> = pairs.map(|(a, b)| a + zero_deg - b).collect();
-            let count = errors.len() as f64;
-            means.push(errors.iter().sum::<f64>() / count);
-            left += errors.iter().map(|e| e * e).sum::<f64>() / count;
+            means.push(mean(&errors));
+            left += mean_square(&errors);
             noise += own.std_deg.powi(2);
             let (low, high) = limits(measured);
             range_deg = range_deg.max(high - low);
@@ -40,8 +40,7 @@ impl BenchIdentification {
         if means.len() < 2 {
             return Ok(None);
         }
-        let middle = means.iter().sum::<f64>() / means.len() as f64;
-        let share = means.iter().map(|mean| (mean - middle).powi(2)).sum::<f64>() / left;
+        let share = means.len() as f64 * variance(&means) / left;
         let times = (left / noise).sqrt();
         let (low, high) = limits(&means);
         let level_percent = 100.0 * (high - low) / range_deg;
@@ -55,47 +54,19 @@ impl BenchIdentification {
 mod tests {
     use super::super::{Comparing, identify_bench};
     use super::*;
-    use measured_data::{Accuracy, BenchData, MeasuredTable, Run, RunFile};
+    use crate::test_bench::PlaysBench;
+    use measured_data::BenchData;
     use preisach_dyn::identify::{Family, Settings};
-    use std::f64::consts::TAU;
 
-    /// Slow sines through plays with noise: from rest at their middle, or cycles after a rise from 0 V.
+    /// From rest at their middle, or cycles after a rise from 0 V.
     fn bench(after_zero: bool) -> BenchData {
-        let mut noise = model_gap::SplitMix(3);
-        let mut run = |volt: f64| {
-            let time_step_s = 0.01;
-            let input: Vec<f64> =
-                (0..1500).map(|i| 70.0 + volt * (TAU * f64::from(i) / 500.0).sin()).collect();
-            let mut plays = [if after_zero { 0.0_f64 } else { 70.0 }; 4];
-            let mut at = |u: &f64| {
-                let mut y = *u;
-                for (play, half_width) in plays.iter_mut().zip([5.0, 15.0, 30.0, 45.0]) {
-                    *play = play.min(u + half_width).max(u - half_width);
-                    y += 0.25 * *play;
-                }
-                y
-            };
-            if after_zero {
-                for u in &input[..500] {
-                    at(u);
-                }
-            }
-            let output = input.iter().map(|u| at(u) + 0.05 * noise.normal()).collect();
-            let time_s = (0..1500).map(|i| time_step_s * f64::from(i)).collect();
-            let (id, use_as) = (format!("{volt} V"), Some(RecordUse::Train));
-            let table = MeasuredTable { time_s, time_step_s, input, output, ..Default::default() };
-            Run { entry: RunFile { id, use_as, ..RunFile::default() }, table }
-        };
-        BenchData {
-            title: String::new(),
-            folder: "bench".into(),
-            runs: [50.0, 25.0, 12.0].map(&mut run).to_vec(),
-            flap_deg_per_um: Some(0.04),
-            command_range_volt: (20.0, 120.0),
-            accuracy: Accuracy::default(),
-            warnings: vec![],
-            content_hash: String::new(),
+        PlaysBench {
+            runs: &[50.0, 25.0, 12.0].map(|volt| (volt, RecordUse::Train)),
+            half_widths_volt: &[5.0, 15.0, 30.0, 45.0],
+            after_zero,
+            noise_um: 0.05,
         }
+        .data()
     }
 
     #[test]

@@ -7,7 +7,7 @@ mod physical;
 mod summary;
 
 pub use choice::{ModelChoice, Pick, PickReason};
-pub use intervals::{CONFIRMED, KnownQuantity, known_quantities};
+pub use intervals::{KnownQuantity, known_quantities};
 pub use physical::PhysicalParameter;
 pub use summary::fit_table;
 pub use summary::{DensityLine, FindingLine, IdentifyResult, ModelLine};
@@ -448,6 +448,24 @@ mod tests {
         let message = found.pick(Some(Family::BoucWenMode)).unwrap_err().to_string();
         assert!(message.contains("Bouc-Wen + mode was left out"), "{message}");
         assert!(message.contains("--only"), "{message}");
+    }
+
+    /// What a run is said to be missed by is that of the run without the numbers that stand for none.
+    #[test]
+    fn spikes_are_no_part_of_the_error() {
+        let line = LinearGain { gain_deg_per_volt: 0.1, bias_volt: 65.0 };
+        let mut data = bench(ActuatorLaw::Linear(line));
+        for index in [300, 900, 1400] {
+            data.runs[1].table.output[index] = -9999.0;
+        }
+        let only = Some(Comparing { families: &[Family::Linear], done: &|| () });
+        let found = identify_bench(&data, &Settings::default(), only).unwrap();
+        let summary = found.summary(None);
+        for run in &summary.runs {
+            assert!(run.nrmse_percent < 1.0, "{}: {} %", run.id, run.nrmse_percent);
+        }
+        let is_told = |f: &&Finding| matches!(f, Finding::Spikes { samples: 3, .. });
+        assert_eq!(found.identification.summary.findings.iter().filter(is_told).count(), 1);
     }
 
     /// A run at rest tells the noise that models are compared after.
