@@ -40,8 +40,14 @@ pub fn use_text(own: &ActuatorUse) -> String {
     sheet.labelled("Actuator", &own.actuator);
     let (count, step) = (own.samples.len(), significant(own.step_s, 6));
     sheet.labelled("Record", &format!("{}, {count} samples, step {step} s", own.record));
-    sheet.labelled("Input", &format!("{}: {}", own.columns[0], range(|own| own.input)));
-    sheet.labelled("Output", &format!("{}: {}", own.columns[1], range(|own| own.output)));
+    let named = |at: usize| match &own.read_from[at] {
+        Some(source) if *source != own.columns[at] => {
+            format!("{}, read from the column `{source}`", own.columns[at])
+        }
+        _ => own.columns[at].clone(),
+    };
+    sheet.labelled("Input", &format!("{}: {}", named(0), range(|own| own.input)));
+    sheet.labelled("Output", &format!("{}: {}", named(1), range(|own| own.output)));
     if let Some(error) = &own.error {
         let of = if error.is_wanted { "of the wanted" } else { "of the measured" };
         sheet.labelled(

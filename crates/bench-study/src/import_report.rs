@@ -78,6 +78,9 @@ impl ImportReport {
                 .iter()
                 .map(|c| vec![c.column.clone(), number_text(c.least), number_text(c.largest)]);
             sheet.block(&table(&["column", "smallest", "largest"], rows));
+            for said in &run.renamed {
+                sheet.line(format_args!(" {said}"));
+            }
             if !run.left_out.is_empty() {
                 sheet.line(format_args!(" left out: {}", names(&run.left_out)));
             }

@@ -2,7 +2,7 @@
 
 use super::history_inverse::{HistoryInverseSettings, history_inverse};
 use crate::StoredActuator;
-use measured_data::EvenRecord;
+use measured_data::import::{EvenRecord, RecordColumn};
 use measured_data::problem::{Fault, Place, Problem};
 use preisach_dyn::{Drive, PreisachError};
 use serde::Serialize;
@@ -31,6 +31,8 @@ pub struct ActuatorUse {
     pub step_s: f64,
     /// Names of the columns of input and output, with their units.
     pub columns: [String; 2],
+    /// Names of the columns of the record that they were read from, with their units; none of what is no column of it.
+    pub read_from: [Option<String>; 2],
     /// How far the output is from what is beside it; none of a prediction with nothing beside it.
     pub error: Option<Deviation>,
     /// Samples whose voltage is an end of the range; none of a prediction.
@@ -83,17 +85,17 @@ pub struct UseSample {
     pub beside: Option<f64>,
 }
 
-/// An output column of a record: its name, its values, whether it is a displacement.
-type Output = (String, Vec<f64>, bool);
+/// An output column of a record: its name, what it was read from, whether it is a displacement.
+type Output = (String, RecordColumn, bool);
 
 /// The output that a record has beside its times.
 fn output_of(own: &StoredActuator, record: &EvenRecord) -> Result<Option<Output>, Problem> {
     let (input, output) = (own.input_column(), own.output_column());
-    if let Some(values) = record.column(&output, &input)? {
-        return Ok(Some((output, values, true)));
+    if let Some(own) = record.column(&output, &input)? {
+        return Ok(Some((output, own, true)));
     }
     // another angle than that of its name is no flap
-    Ok(record.column(FLAP, FLAP)?.map(|values| (FLAP.to_owned(), values, false)))
+    Ok(record.column(FLAP, FLAP)?.map(|own| (FLAP.to_owned(), own, false)))
 }
 
 /// Flap angles in the unit of an output column.
@@ -104,12 +106,12 @@ fn shown(own: &StoredActuator, angles_deg: &[f64], is_displacement: bool) -> Vec
 }
 
 /// An error with what to do about a record that goes beyond the range.
-fn remedied(error: PreisachError, record: &str) -> UseError {
+fn remedied(error: PreisachError, record: &str, column: &str) -> UseError {
     if !matches!(error, PreisachError::VoltageOutOfRange { .. }) {
         return error.into();
     }
     let message = format!(
-        "{error}: identify the actuator from runs that go as far; the numbers of a monitor output are brought back with --scale command=FACTOR"
+        "{error}: identify the actuator from runs that go as far; the numbers of a monitor output are brought back with --scale {column}=FACTOR"
     );
     Problem::new(Place::file(record), Fault::Other(message)).into()
 }
@@ -153,15 +155,16 @@ impl StoredActuator {
             None => (output, true),
         };
         let output = self
-            .output_under(&command, record.step_s, is_displacement)
-            .map_err(|error| remedied(error, &record.name))?;
-        let beside = measured.as_ref().map(|own| &own.1[..]);
-        let samples = samples(&record.time_s, &command, &output, beside);
+            .output_under(&command.values, record.step_s, is_displacement)
+            .map_err(|error| remedied(error, &record.name, &command.name))?;
+        let beside = measured.as_ref().map(|own| &own.1.values[..]);
+        let samples = samples(&record.time_s, &command.values, &output, beside);
         Ok(ActuatorUse {
             actuator: self.title.clone(),
             record: record.name.clone(),
             step_s: record.step_s,
             columns: [input, name],
+            read_from: [Some(command.label), measured.as_ref().map(|own| own.1.label.clone())],
             error: beside.map(|beside| deviation_of(&output, beside, false)),
             at_limit: None,
             simulations: None,
@@ -176,13 +179,14 @@ impl StoredActuator {
     pub fn inverted(&self, record: &EvenRecord) -> Result<ActuatorUse, UseError> {
         let (name, wanted, is_displacement) =
             output_of(self, record)?.ok_or_else(|| record.missing(&self.output_column()))?;
-        let found = self.command_for(&wanted, record.step_s, is_displacement)?;
-        let samples = samples(&record.time_s, &found.input, &found.output, Some(&wanted));
+        let found = self.command_for(&wanted.values, record.step_s, is_displacement)?;
+        let samples = samples(&record.time_s, &found.input, &found.output, Some(&wanted.values));
         Ok(ActuatorUse {
             actuator: self.title.clone(),
             record: record.name.clone(),
             step_s: record.step_s,
             columns: [self.input_column(), name],
+            read_from: [None, Some(wanted.label)],
             error: Some(found.error),
             at_limit: Some(found.at_limit),
             simulations: Some(found.simulations),

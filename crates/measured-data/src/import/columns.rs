@@ -44,6 +44,9 @@ type Named = (Numbered, Vec<String>);
 /// Columns with their numbers in the source, from 0.
 type Numbered = Vec<(usize, Channel)>;
 
+/// What a voltage of an output is called.
+const SENSOR: &str = "sensor";
+
 /// The columns of a bench.
 const USUAL: [&str; 3] = ["time_s", "command_V", "displacement_um"];
 
@@ -71,7 +74,7 @@ fn unitless(named: &[(usize, Channel)], left_out: &[String]) -> Fault {
             rate = " --sampling-hz RATE, for stamps without a unit are no seconds";
             None
         }
-        "displacement_um" if is_told_in_volt(source) => Some(format!("sensor_V={source}")),
+        "displacement_um" if is_told_in_volt(source) => Some(format!("{SENSOR}_V={source}")),
         _ => Some(format!("{own}={source}")),
     });
     let example = kept.chain(said).take(3).collect::<Vec<_>>().join(",");
@@ -165,6 +168,8 @@ pub(super) struct Choice {
     pub(super) left_out: Vec<String>,
     /// What was done to the numbers, in words: `command x 15`.
     pub(super) corrections: Vec<String>,
+    /// Columns that were called otherwise, in words: ``command is the column `u_V` ``.
+    pub(super) renamed: Vec<String>,
 }
 
 impl Choice {
@@ -284,15 +289,15 @@ pub(super) fn choose(
         let columns = data.iter().map(|(source, c)| converted(*source, c, c.unit.symbol));
         let columns = columns.collect::<Result<_, _>>()?;
         let kind = ImportKind::GenericLoop;
-        let mut choice = Choice { time, columns, kind, left_out, corrections: Vec::new() };
+        let [corrections, renamed] = [const { Vec::new() }; 2];
+        let mut choice = Choice { time, columns, kind, left_out, corrections, renamed };
         choice.correct(options)?;
         return Ok(choice);
     }
     let said = [&options.columns, &options.convert, &options.input, &options.response];
     let is_own = said.into_iter().all(Option::is_none);
-    if is_own && wanted.is_none_or(|kind| kind == ImportKind::ActuatorBench) {
-        name_bench(&mut data);
-    }
+    let may_name = is_own && wanted.is_none_or(|kind| kind == ImportKind::ActuatorBench);
+    let mut renamed = if may_name { name_bench(&mut data) } else { Vec::new() };
     let has = |name: &str, dimension: Dimension| {
         data.iter().any(|(_, c)| c.name == name && c.unit.dimension == dimension)
     };
@@ -330,7 +335,11 @@ pub(super) fn choose(
     };
     let is_taken = |source: usize| columns.iter().any(|taken| taken.source == source);
     left_out.extend(data.iter().filter(|(i, _)| !is_taken(*i)).map(|(_, c)| c.label()));
-    let mut choice = Choice { time, columns, kind, left_out, corrections: Vec::new() };
+    if may_name && kind == ImportKind::GenericLoop {
+        renamed.extend(no_command(times.first(), &data));
+    }
+    let corrections = Vec::new();
+    let mut choice = Choice { time, columns, kind, left_out, corrections, renamed };
     choice.correct(options)?;
     for Taken { channel, .. } in choice.taken() {
         let name = &channel.name;
@@ -348,6 +357,26 @@ pub(super) fn choose(
     Ok(choice)
 }
 
+/// What is said of the only voltage beside the only length, where its name keeps it from being the command.
+fn no_command(time: Option<&(usize, Channel)>, data: &[(usize, Channel)]) -> Option<String> {
+    let only = |dimension: Dimension| {
+        let of_kind: Vec<_> = data.iter().filter(|own| own.1.unit.dimension == dimension).collect();
+        if let [one] = of_kind[..] { Some(one) } else { None }
+    };
+    let [(voltage_at, voltage), (length_at, length)] =
+        [only(Dimension::Voltage)?, only(Dimension::Length)?];
+    let column =
+        |name: &str, own: &Channel, at: usize| format!("{name}_{}=#{}", own.unit.symbol, at + 1);
+    let time = time.map(|(at, own)| format!("{},", column("time", own, *at)));
+    Some(format!(
+        "`{}` is not taken for the command, by its name; if it is: --columns {}{},{}",
+        voltage.label(),
+        time.unwrap_or_default(),
+        column("command", voltage, *voltage_at),
+        column("displacement", length, *length_at)
+    ))
+}
+
 /// What a bench calls its command and its displacement.
 const BENCH: [(&str, Dimension); 2] =
     [("command", Dimension::Voltage), ("displacement", Dimension::Length)];
@@ -358,17 +387,30 @@ fn bench_places(data: &[(usize, Channel)]) -> [Option<usize>; 2] {
         let is = |i: &usize| data[*i].1.unit.dimension == dimension;
         let all: Vec<usize> = (0..data.len()).filter(is).collect();
         let named = all.iter().copied().find(|i| data[*i].1.name == name);
-        named.or(if let [one] = all[..] { Some(one) } else { None })
+        let is_free = |i: &usize| is_free_name(&data[*i].1.name);
+        named.or(if let [one] = all[..] { Some(one).filter(is_free) } else { None })
     })
 }
 
-/// Calls the only voltage the command and the only length the displacement, where no column has these names.
-fn name_bench(data: &mut [(usize, Channel)]) {
+/// Whether a column of this name may be command or displacement: none that is another quantity of a bench by its name.
+pub(super) fn is_free_name(name: &str) -> bool {
+    let is = |own: &str| name.eq_ignore_ascii_case(own);
+    !(is(SENSOR) || QUANTITIES.iter().any(|(own, ..)| is(own)))
+}
+
+/// Calls the only voltage the command and the only length the displacement, where no column has these names; says so.
+fn name_bench(data: &mut [(usize, Channel)]) -> Vec<String> {
+    let mut said = Vec::new();
     if let [Some(command), Some(displacement)] = bench_places(data) {
         for (at, (name, _)) in [command, displacement].into_iter().zip(BENCH) {
-            name.clone_into(&mut data[at].1.name);
+            let own = &mut data[at].1;
+            if own.name != name {
+                said.push(format!("{name} is the column `{}`", own.label()));
+                name.clone_into(&mut own.name);
+            }
         }
     }
+    said
 }
 
 fn names(data: &[(usize, Channel)]) -> String {

@@ -72,6 +72,8 @@ pub struct ImportedRun {
     pub columns: Vec<ColumnSpan>,
     /// Columns of the source that were left out.
     pub left_out: Vec<String>,
+    /// Columns of the source that were called otherwise, or are not what they might be by their name, in words.
+    pub renamed: Vec<String>,
 }
 
 /// A column and its extremes.
@@ -250,6 +252,7 @@ impl ReadSource {
             curves: None,
             columns: vec![],
             left_out: vec![],
+            renamed: vec![],
         }
     }
 }
@@ -289,8 +292,8 @@ impl Parts {
             1 => format!("{from}, every sample"),
             block => format!("{from}, means of {block} samples"),
         };
-        for correction in &choice.corrections {
-            note = format!("{note}, {correction}");
+        for said in choice.renamed.iter().chain(&choice.corrections) {
+            note = format!("{note}, {said}");
         }
         let step_s = gathered.sampling.step_s * gathered.block as f64;
         let times = written_times(gathered);
@@ -307,6 +310,7 @@ impl Parts {
                 step_s: Some(significant(step_s, 9)),
                 jitter_percent: Some(significant(100.0 * gathered.sampling.jitter, 3)),
                 left_out: choice.left_out.clone(),
+                renamed: choice.renamed.clone(),
                 columns: columns.map(|(label, v)| span(label, &v[part.clone()])).collect(),
                 ..source.run(self.new_id(&source.path), [gathered.count, part.len()])
             };

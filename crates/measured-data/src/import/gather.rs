@@ -27,6 +27,8 @@ const SHORT_GAP: f64 = 1.5;
 const SURELY_EVEN: usize = 30;
 /// Fewest samples of a part of a source.
 const LEAST_PART: usize = 16;
+/// Fewest samples whose uneven steps are those of a clock that rounds.
+const LEAST_OF_CLOCK: usize = 16;
 /// Most samples without a number in a row that are filled by a straight line.
 const MOST_FILLED: usize = 10;
 /// The last numbers of counters of 8, 16 and 32 bit, behind which they begin at 0.
@@ -519,7 +521,7 @@ impl Gather {
     /// longer is twice the shorter and rare, samples may have been lost: that is no clock. The step is that of the straight line of least squares through the stamps.
     fn rounded(&self) -> Option<(Even, f64)> {
         let &[a, b] = &self.time.steps[..] else { return None };
-        if self.count < LEAST_PART {
+        if self.count < LEAST_OF_CLOCK {
             return None;
         }
         let (short, long) = if a.0 < b.0 { (a, b) } else { (b, a) };

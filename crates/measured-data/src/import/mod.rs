@@ -21,7 +21,7 @@ pub use columns::ColumnOptions;
 pub use folder::{ImportResult, ImportedRun};
 pub use mapping::{deg_per_um_of_arm, import_mapped};
 pub use mat::{MatValue, Variables, mat_file, read_variables};
-pub use record::EvenRecord;
+pub use record::{EvenRecord, RecordColumn};
 
 use crate::dataset::DatasetKind;
 use crate::error::DataError;

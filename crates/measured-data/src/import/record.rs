@@ -1,6 +1,6 @@
 //! A record of its own, out of any source: nothing is written.
 
-use super::columns::ColumnOptions;
+use super::columns::{ColumnOptions, is_free_name};
 use super::gather::Reduction;
 use super::{Imported, OpenSource, Reading, fault_of_rate};
 use crate::files::Source;
@@ -26,6 +26,17 @@ pub struct EvenRecord {
     columns: Vec<(Channel, Vec<f64>)>,
     /// Names of columns without a known unit.
     left_out: Vec<String>,
+}
+
+/// A column of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordColumn {
+    /// Its own name, without unit.
+    pub name: String,
+    /// Its own name with its own unit: `u_mV`.
+    pub label: String,
+    /// Its numbers, in the unit that was asked for.
+    pub values: Vec<f64>,
 }
 
 impl EvenRecord {
@@ -109,11 +120,12 @@ impl EvenRecord {
     /// The numbers of a column, in the unit of a label such as `displacement_um`.
     ///
     /// It is the column of that name in whatever unit of the same quantity. Without one it is the only column of the quantity, if
-    /// `beside`, the label of the other column that is wanted, is of another quantity. None if there is none.
+    /// `beside`, the label of the other column that is wanted, is of another quantity, and the column is not named as another
+    /// quantity of a bench, such as `amplifier` or `sensor`. None if there is none.
     ///
     /// # Errors
     /// Two columns of that name.
-    pub fn column(&self, label: &str, beside: &str) -> Result<Option<Vec<f64>>, Problem> {
+    pub fn column(&self, label: &str, beside: &str) -> Result<Option<RecordColumn>, Problem> {
         let (Some(wanted), beside) = (Channel::parse(label), Channel::parse(beside)) else {
             return Ok(None);
         };
@@ -125,7 +137,7 @@ impl EvenRecord {
         let is_alone = beside.is_none_or(|own| own.unit.dimension != wanted.unit.dimension);
         let found = match (&named[..], &of_kind[..]) {
             ([one], _) => one,
-            ([], [one]) if is_alone => one,
+            ([], [one]) if is_alone && is_free_name(&one.0.name) => one,
             ([], _) => return Ok(None),
             _ => {
                 let message = format!(
@@ -139,7 +151,11 @@ impl EvenRecord {
         let (own, values) = found;
         // no factor leads from one temperature to another
         let factor = own.unit.factor_to(wanted.unit);
-        Ok(factor.map(|factor| values.iter().map(|value| factor * value).collect()))
+        Ok(factor.map(|factor| RecordColumn {
+            name: own.name.clone(),
+            label: own.label(),
+            values: values.iter().map(|value| factor * value).collect(),
+        }))
     }
 
     /// That a column is missing.

@@ -78,6 +78,7 @@ pub(super) fn import_sweep(
         curves: None,
         columns: columns.collect(),
         left_out: Vec::new(),
+        renamed: Vec::new(),
     };
     Ok(ImportResult {
         folder: request.out.display().to_string(),

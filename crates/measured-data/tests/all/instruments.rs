@@ -240,8 +240,9 @@ fn a_record_of_its_own_is_read_as_the_import_reads_it() {
             let own = EvenRecord::open(file, &ColumnOptions::default(), None).unwrap();
             assert_eq!(own.time_s.len(), rows.len(), "{}", recording.name);
             for (column, beside) in [(1, 2), (2, 1)] {
-                let values = own.column(&header[column], &header[beside]).unwrap();
-                let values = values.unwrap_or_else(|| panic!("{}: {header:?}", recording.name));
+                let own = own.column(&header[column], &header[beside]).unwrap();
+                let own = own.unwrap_or_else(|| panic!("{}: {header:?}", recording.name));
+                let values = own.values;
                 let most = values.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
                 for (own, row) in values.iter().zip(&rows) {
                     assert!((own - row[column]).abs() <= 1e-6 * most, "{}", recording.name);
@@ -261,13 +262,21 @@ fn columns_are_found_by_name_and_quantity() {
         |text: &str| EvenRecord::read(&Source { name: "a.csv".into(), text: text.into() }).unwrap();
     let own = read("time_ms;u_mV;weg_mm\n0;1000;0,001\n1;2000;0,002\n2;3000;0,003\n");
     assert!((own.step_s - 1e-3).abs() < 1e-12);
-    assert_eq!(own.column("command_V", "displacement_um").unwrap().unwrap(), [1.0, 2.0, 3.0]);
-    assert_eq!(own.column("displacement_um", "command_V").unwrap().unwrap(), [1.0, 2.0, 3.0]);
+    let command = own.column("command_V", "displacement_um").unwrap().unwrap();
+    assert_eq!((&command.label[..], &command.values[..]), ("u_mV", &[1.0, 2.0, 3.0][..]));
+    let displacement = own.column("displacement_um", "command_V").unwrap().unwrap();
+    assert_eq!(displacement.values, [1.0, 2.0, 3.0]);
     // an output in volts is not the command
     assert_eq!(own.column("sensor_V", "command_V").unwrap(), None);
     assert_eq!(own.column("load_N", "command_V").unwrap(), None);
     let two = read("time_s,a_V,command_V\n0,1,2\n1,1,3\n2,1,4\n");
-    assert_eq!(two.column("command_V", "displacement_um").unwrap().unwrap(), [2.0, 3.0, 4.0]);
+    let command = two.column("command_V", "displacement_um").unwrap().unwrap();
+    assert_eq!(command.values, [2.0, 3.0, 4.0]);
+    // what another quantity is named is no command
+    for other in ["sensor_V", "Amplifier_V"] {
+        let text = format!("time_s,{other},weg_um\n0,1,2\n1,1,3\n2,1,4\n");
+        assert_eq!(read(&text).column("command_V", "displacement_um").unwrap(), None, "{other}");
+    }
     let same = read("time_s,command_V,command_mV\n0,1,2\n1,1,3\n2,1,4\n");
     let said = same.column("command_V", "displacement_um").unwrap_err().to_string();
     assert!(said.contains("2 columns are called `command`"), "{said}");

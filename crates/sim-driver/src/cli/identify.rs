@@ -118,11 +118,10 @@ fn families(args: &IdentifyArgs) -> Result<Vec<Family>, Problem> {
     Ok(families)
 }
 
-/// The page beside a model file; none beside a pipe or a device, and where the model itself has its name.
+/// The page beside a model file; none beside a pipe or a device.
 fn page_path(model: &Path) -> Option<PathBuf> {
     let is_other = model.exists() && !model.is_file();
-    let page = model.with_extension("html");
-    (!is_other && page != model).then_some(page)
+    (!is_other).then(|| model.with_extension("html"))
 }
 
 pub(super) fn predict(args: &PredictArgs) -> Result<(), SimError> {

@@ -85,6 +85,12 @@ fn a_record_may_be_written_as_any_recorder_does() {
         let found = error(args);
         assert!((found - expected).abs() < 1e-3 * expected, "{args:?}: {found} {expected}");
     }
+    // whose column the command is
+    let told = place.hhc(&["predict", "a.ron", "--input", "other.txt"]).done();
+    assert!(told.contains("command_V, read from the column `spannung_mV`"), "{told}");
+    assert!(told.contains("displacement_um, read from the column `weg_mm`"), "{told}");
+    let told = place.hhc(&["predict", "a.ron", "--input", "plain.csv"]).done();
+    assert!(!told.contains("read from"), "{told}");
     let none = ["predict", "a.ron", "--input", "untimed.csv", "--sampling-hz", "0"];
     place.hhc(&none).rejected(&["--sampling-hz", "0 Hz, expected a positive"]);
 }
@@ -165,7 +171,42 @@ fn records_that_do_not_serve_are_refused_at_their_place() {
         "time_s,command_V\n0,1\n1,2e5\n2,1\n",
         &["high.csv", "200000", "--scale command=FACTOR"],
     );
+    // a factor is given to the column by its own name
+    rejected("millivolt.csv", "time_s,u_V\n0,1e3\n1,9e4\n2,1e3\n", &["--scale u=FACTOR"]);
+    let scaled = ["predict", "a.ron", "--input", "millivolt.csv", "--scale", "u=1e-3"];
+    place.hhc(&scaled).done();
+    // a voltage that is no command by its name
+    for name in ["sensor", "amplifier"] {
+        let text = format!("time_s,{name}_V,displacement_um\n0,1,2\n1,2,4\n2,1,2\n");
+        let label = format!("{name}_V");
+        rejected("other.csv", &text, &["`command_V` is missing", &label, "--columns"]);
+        let columns = format!("time_s=#1,command_V={label}");
+        place.hhc(&["predict", "a.ron", "--input", "other.csv", "--columns", &columns]).done();
+    }
     place
         .hhc(&["predict", "a.ron", "--input", "high.csv", "-o", "high.csv"])
         .rejected(&["is a file this command reads"]);
+}
+
+/// The actuator of a loop of any two channels takes its own input, and no command of a bench.
+#[test]
+fn a_loop_takes_no_command_for_its_input() {
+    let place = Place::new();
+    let row = |k: u32| {
+        let (t, angle) = (0.01 * f64::from(k), 0.02 * f64::from(k));
+        format!("{t},{},{}\n", 3.0 * angle.sin(), 0.2 * (angle - 0.1).sin())
+    };
+    let rows: String = (0..1200).map(row).collect();
+    place.write("loops/a.csv", &format!("time_s,current_A,force_N\n{rows}"));
+    place.write(
+        "loops/dataset.ron",
+        r#"(kind: GenericLoop, title: "t", runs: [(id: "a", file: "a.csv", role: Reference)])"#,
+    );
+    place.hhc(&["identify", "loops", "-o", "a.ron", "--only", "prandtl-plays"]).done();
+    place.write("volts.csv", "time_s,command_V,displacement_um\n0,1,2\n1,2,4\n2,1,2\n");
+    place.write("own.csv", "time_s,current_mA\n0,1000\n1,2000\n2,1000\n");
+    let told = place.hhc(&["predict", "a.ron", "--input", "own.csv"]).done();
+    assert!(told.contains("current_A, read from the column `current_mA`: 1 to 2"), "{told}");
+    let told = ["`current_A` is missing", "command_V, displacement_um"];
+    place.hhc(&["predict", "a.ron", "--input", "volts.csv"]).rejected(&told);
 }

@@ -47,6 +47,36 @@ fn a_bench_in_other_units() {
         .rejected(&["bench exists already and is not overwritten"]);
 }
 
+/// Which column was taken for the command is said. A voltage that is no command by its name is not taken for one; the option that is
+/// printed takes it.
+#[test]
+fn whose_column_the_command_is() {
+    let place = Place::new();
+    let rows = play(0.2, 1000);
+    place.write("u.csv", &csv("time_ms,u_mV,weg_um\n", &rows, [1e3, 8e4, 50.0]));
+    let told = place.hhc(&["import", "u.csv", "-o", "u"]).done();
+    assert!(told.contains("command is the column `u_mV`"), "{told}");
+    assert!(told.contains("displacement is the column `weg_um`"), "{told}");
+    for name in ["sensor", "amplifier"] {
+        let header = format!("time_ms,{name}_mV,weg_um\n");
+        place.write("v.csv", &csv(&header, &rows, [1e3, 8e4, 50.0]));
+        let told = place.hhc(&["import", "v.csv", "-o", name]).done();
+        assert!(told.contains("data set of kind GenericLoop"), "{told}");
+        let option = "--columns time_ms=#1,command_mV=#2,displacement_um=#3";
+        let line =
+            format!("`{name}_mV` is not taken for the command, by its name; if it is: {option}");
+        assert!(told.contains(&line), "{told}");
+        let (option, columns) = option.split_once(' ').unwrap();
+        let bench = format!("{name}_bench");
+        let told = place.hhc(&["import", "v.csv", "-o", &bench, option, columns]).done();
+        assert!(told.contains("data set of kind ActuatorBench"), "{told}");
+        // whoever asks for a loop knows what it is
+        let out = format!("{name}_loop");
+        let asked = ["import", "v.csv", "-o", &out, "--kind", "generic-loop"];
+        assert!(!place.hhc(&asked).done().contains("is not taken"));
+    }
+}
+
 #[test]
 fn generic_loops_several_files_and_json() {
     let place = Place::new();
