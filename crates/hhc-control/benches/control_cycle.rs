@@ -70,6 +70,7 @@ fn rotor(harmonics: &[u32], asked: Asked) -> (TMatrix, Vec<f64>, CycleController
         flap_survival,
         rate_limit_volt,
         rate_weight,
+        dead_flap_cost: if flap_survival < 1.0 { 1.15 } else { f64::INFINITY },
         ..RelaxedSettings::of_layout(&layout)
     };
     let controller = RelaxedController::new(&layout, 12, settings).unwrap();

@@ -26,11 +26,13 @@ fn flying() -> (HarmonicAnalyser, CycleController, TMatrix) {
         amplitude_limit_volt: vec![2.0; layout.pairs()],
         rate_limit_volt: 1.0,
         effort_weight: 1e-3,
+        flap_survival: 0.9,
+        dead_flap_cost: 1.15,
         ..RelaxedSettings::of_layout(&layout)
     };
     let controller = RelaxedController::new(&layout, 12, settings).unwrap();
     let start = [30.0; 12];
-    let adaptive = EstimatorSettings::in_flight(10.0);
+    let adaptive = EstimatorSettings { dither_rad: 0.05, ..EstimatorSettings::in_flight(10.0) };
     let flying = CycleController::new(controller, &adaptive, &t, &start).unwrap();
     (HarmonicAnalyser::new(6, SAMPLES, WINDOW_REV, &[4]).unwrap(), flying, t)
 }

@@ -244,6 +244,11 @@ fn constants(spec: &ControllerSpec, known: Known) -> String {
         scalar("EFFORT_WEIGHT", settings.effort_weight, "rho, 1/V^2"),
         scalar("RATE_WEIGHT", settings.rate_weight, "s, S = s I, 1/V^2"),
         scalar("FLAP_SURVIVAL", settings.flap_survival, "q, the chance that a flap acts"),
+        scalar(
+            "DEAD_FLAP_COST",
+            settings.dead_flap_cost,
+            "largest J that a flap that stops may leave, over that of zero control",
+        ),
         scalar("GAIN", settings.gain, "part of the way to the optimum that a step goes"),
         scalar(
             "RATE_LIMIT_VOLT",

@@ -155,12 +155,44 @@ static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linea
 
 /* ---- relaxed step ----------------------------------------------------------------------------- */
 
+/* The largest part of the target, up to 1, with which no flap that stops leaves J above DEAD_FLAP_COST
+ * times that of zero control: a root of a parabola. */
+static double part_that_is_borne(const {{name}}_state *s, double t[LOADS][CONTROLS], const double z[LOADS])
+{
+    double at_rest = 0.0, room, part = 1.0;
+    int i, k, dead;
+    for (i = 0; i < LOADS; ++i) {
+        at_rest += (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]) * z[i] * z[i];
+    }
+    room = (DEAD_FLAP_COST - 1.0) * at_rest;
+    if (!isfinite(room)) {
+        return part;
+    }
+    for (dead = 0; dead < FLAPS; ++dead) {
+        double a = 0.0, b = 0.0, root;
+        for (i = 0; i < LOADS; ++i) {
+            const double weight = s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i];
+            double moved = 0.0;
+            for (k = 0; k < CONTROLS; ++k) {
+                moved += k / WIDTH == dead ? 0.0 : t[i][k] * s->target_volt[k];
+            }
+            a += weight * moved * moved;
+            b += weight * z[i] * moved;
+        }
+        root = sqrt(b * b + a * room);
+        if (a > 0.0) {
+            part = fmin(part, b > 0.0 ? room / (b + root) : (root - b) / a);
+        }
+    }
+    return part;
+}
+
 /* J = E(Z'WZ)/q + rho u'u + du'S du, each flap acting with the chance q = FLAP_SURVIVAL;
- * u <- u + min(g, c) (argmin J in the discs - u), c by the rate. */
+ * u <- u + min(g, c) (d argmin J in the discs - u), c by the rate, d by a flap that stops. */
 static void step({{name}}_state *s, double volt[CONTROLS], double t[LOADS][CONTROLS], const double outputs[LOADS])
 {
     double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
-    double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2];
+    double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2], borne;
     int i, j, k, flap;
     for (i = 0; i < LOADS; ++i) {
         z[i] = s->is_load_lost[i] ? 0.0 : outputs[i];
@@ -195,17 +227,18 @@ static void step({{name}}_state *s, double volt[CONTROLS], double t[LOADS][CONTR
             s->target_volt[k] = free_volt[k];
         }
     }
+    borne = part_that_is_borne(s, t, z);
     for (i = 0; i < PAIRS; ++i) {
         const double *to = &s->target_volt[2 * i], *from = &volt[2 * i];
         double *largest = &fastest[s->is_flap_lost[2 * i / WIDTH] != 0];
-        *largest = fmax(*largest, hypot(to[0] - from[0], to[1] - from[1]));
+        *largest = fmax(*largest, hypot(borne * to[0] - from[0], borne * to[1] - from[1]));
     }
     /* flaps that are lost go to 0 apart: the others do not wait for them */
     for (i = 0; i < 2; ++i) {
         share[i] = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest[i], DBL_MIN));
     }
     for (k = 0; k < CONTROLS; ++k) {
-        volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (s->target_volt[k] - volt[k]);
+        volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (borne * s->target_volt[k] - volt[k]);
     }
 }
 

@@ -58,6 +58,7 @@ fn spec(knowledge: TKnowledge) -> ControllerSpec {
         effort_weight: 1e-12,
         rate_weight: 1e-12,
         flap_survival: 0.9,
+        dead_flap_cost: 1.02,
         gain: 0.5,
         amplitude_limit_volt: vec![LIMIT_VOLT, 15.0, f64::INFINITY, LIMIT_VOLT],
         rate_limit_volt: 8.0,

@@ -16,6 +16,8 @@ pub struct RelaxedSettings {
     pub rate_weight: f64,
     /// `q`, the chance that a flap acts, above 0 and at most 1: below 1 the flaps lean less on each other.
     pub flap_survival: f64,
+    /// Largest `J` that any one flap that stops may leave, over `J` at zero control, 1 or above; infinity for none.
+    pub dead_flap_cost: f64,
     /// Part of the way to the optimum that a step goes, above 0 and at most 1.
     pub gain: f64,
     /// Largest voltage amplitude of every pair of the layout, V; infinity for none.
@@ -32,6 +34,7 @@ impl RelaxedSettings {
             effort_weight: 0.0,
             rate_weight: 0.0,
             flap_survival: 1.0,
+            dead_flap_cost: f64::INFINITY,
             gain: 1.0,
             amplitude_limit_volt: vec![f64::INFINITY; layout.pairs()],
             rate_limit_volt: f64::INFINITY,
@@ -55,7 +58,8 @@ impl RelaxedSettings {
 /// ```text
 /// J   = E(Z'WZ)/q + rho u'u + du' S du,   Z = Z_here + T du,   E over which flaps act, each with the chance q:
 ///       the blocks of T'WT between two flaps are multiplied by q
-/// u   <-  u_here + min(g, c) ( argmin J  over |u_p| <= U_p  -  u_here ),   c: the largest change is at most the rate
+/// u   <-  u_here + min(g, c) ( d argmin J  over |u_p| <= U_p  -  u_here ),   c: the largest change is at most the rate
+/// d:      the largest up to 1 with which no flap that stops leaves more than `dead_flap_cost` times J of zero control
 /// ```
 /// - Without a limit that binds, `du = -g (T'WT + rho I + S)^-1 (T'W Z + rho u)`.
 /// - The optimum keeps the amplitudes; it is never a clipped one. The rate only shortens the step: every part of the way
@@ -77,6 +81,8 @@ pub struct RelaxedController {
     control_volt: Vec<f64>,
     /// Where the last step led; the next search starts there.
     target: DVector<f64>,
+    /// Part of it that is gone for, so that a flap that stops can be borne.
+    borne: f64,
     program: DiscProgram,
     weighted: DMatrix<f64>,
     loads: DVector<f64>,
@@ -97,6 +103,9 @@ impl RelaxedController {
         error::check_not_negative("rate weight (1/V^2)", settings.rate_weight)?;
         error::check_gain(settings.gain)?;
         error::check_chance(settings.flap_survival)?;
+        let (least, most) = (settings.dead_flap_cost >= 1.0, settings.dead_flap_cost);
+        let what = "cost that a flap that stops may leave, over that of zero control";
+        error::check_range(least, what, most, "1 or above, infinity for none")?;
         let limits = &settings.amplitude_limit_volt;
         error::check_length("amplitude limits", limits.len(), layout.pairs())?;
         for &limit in limits.iter().chain([&settings.rate_limit_volt]) {
@@ -111,6 +120,7 @@ impl RelaxedController {
             pairs_of_flap: layout.harmonics().len(),
             control_volt: layout.zero(),
             target: DVector::zeros(size),
+            borne: 1.0,
             program: DiscProgram::new(settings.amplitude_limit_volt.clone()),
             weighted: DMatrix::zeros(loads, size),
             loads: DVector::zeros(loads),
@@ -147,13 +157,46 @@ impl RelaxedController {
         check_outputs(outputs, &self.is_load_lost)?;
         self.form(t, outputs);
         self.is_limited = self.program.solve(&mut self.target);
+        self.borne = self.part_that_is_borne(t);
         // flaps that are lost go to 0 apart: the others do not wait for them
         let shares = [false, true].map(|is_lost| self.share(is_lost));
         for (k, to) in self.target.iter().enumerate() {
             let is_lost = self.is_flap_lost[k / (2 * self.pairs_of_flap)];
+            let to = self.borne * to;
             self.control_volt[k] += shares[usize::from(is_lost)] * (to - self.control_volt[k]);
         }
         Ok(&self.control_volt)
+    }
+
+    /// The largest part of the target, up to 1, with which `J` keeps its limit whichever flap stops.
+    ///
+    /// `J` is a parabola of the part, that of zero control at its start: a root of `a s^2 + 2 b s = (limit - 1) J0`.
+    fn part_that_is_borne(&self, t: &TMatrix) -> f64 {
+        let (t, controls_of_flap) = (t.as_matrix(), 2 * self.pairs_of_flap);
+        let loads = self.loads.as_slice();
+        let weight = |i: usize| if self.is_load_lost[i] { 0.0 } else { self.weights[i] };
+        let at_rest: f64 = loads.iter().enumerate().map(|(i, z)| weight(i) * z * z).sum();
+        let room = (self.settings.dead_flap_cost - 1.0) * at_rest;
+        let mut part = 1.0_f64;
+        if !room.is_finite() {
+            return part;
+        }
+        for dead in 0..self.is_flap_lost.len() {
+            let (mut a, mut b) = (0.0, 0.0);
+            for (i, z) in loads.iter().enumerate() {
+                let mut moved = 0.0;
+                for (k, to) in self.target.iter().enumerate() {
+                    moved += if k / controls_of_flap == dead { 0.0 } else { t[(i, k)] * to };
+                }
+                a += weight(i) * moved * moved;
+                b += weight(i) * z * moved;
+            }
+            let root = (b * b + a * room).sqrt();
+            if a > 0.0 {
+                part = part.min(if b > 0.0 { room / (b + root) } else { (root - b) / a });
+            }
+        }
+        part
     }
 
     /// Part of the way to the target that the flaps which are lost, or those which are not, go: gain and rate.
@@ -162,7 +205,8 @@ impl RelaxedController {
         let mut fastest = 0.0_f64;
         for (pair, (to, from)) in pairs.enumerate() {
             if self.is_flap_lost[pair / self.pairs_of_flap] == is_lost {
-                fastest = fastest.max((to[0] - from[0]).hypot(to[1] - from[1]));
+                let change = [0, 1].map(|d| self.borne * to[d] - from[d]);
+                fastest = fastest.max(change[0].hypot(change[1]));
             }
         }
         self.settings.gain.min(self.settings.rate_limit_volt / fastest.max(f64::MIN_POSITIVE))
@@ -248,6 +292,11 @@ impl RelaxedController {
     pub(super) fn controls_of(&self, flap: usize) -> std::ops::Range<usize> {
         let width = 2 * self.pairs_of_flap;
         flap * width..(flap + 1) * width
+    }
+
+    /// Part of the optimum that the last step went for: below 1 where a flap that stops would leave too much.
+    pub fn borne(&self) -> f64 {
+        self.borne
     }
 
     /// Whether a limit of an amplitude bound in the last step.

@@ -204,3 +204,49 @@ fn a_flap_that_may_fail_is_leant_on_less() {
     );
     assert!(worst(&found) < 0.6 * worst(&sure) && ratio(&found) < 0.33);
 }
+
+/// Whichever flap stops, it leaves no more than the limit, and not less than it where the limit binds: at once, when the loop has
+/// settled, with a load lost, and on the way there.
+#[test]
+fn a_flap_that_stops_leaves_no_more_than_the_limit() {
+    let (z0, t) = (SPEEDS[1].z0.to_vec(), SPEEDS[1].t(3));
+    let layout = ControlLayout::new(2, vec![3]).unwrap();
+    let of = |dead_flap_cost: f64, gain: f64, lost_load: Option<usize>| {
+        let base = RelaxedSettings::of_layout(&layout);
+        let settings = RelaxedSettings { dead_flap_cost, gain, ..base };
+        let mut relaxed = RelaxedController::new(&layout, 12, settings).unwrap();
+        let weighed = |z: &[f64]| {
+            let kept = z.iter().enumerate().filter(|(i, _)| Some(*i) != lost_load);
+            kept.map(|(_, z)| z * z).sum::<f64>()
+        };
+        if let Some(load) = lost_load {
+            relaxed.set_load_lost(load, true).unwrap();
+        }
+        let mut worst = Vec::new();
+        for _ in 0..20 {
+            let z = loads(&z0, &t, relaxed.control_volt());
+            relaxed.step(&t, &z).unwrap();
+            let without = |flap: usize| {
+                let mut left = relaxed.control_volt().to_vec();
+                left[2 * flap..][..2].fill(0.0);
+                weighed(&loads(&z0, &t, &left)) / weighed(&z0)
+            };
+            worst.push(without(0).max(without(1)));
+        }
+        (worst, relaxed.borne())
+    };
+    for lost_load in [None, Some(4)] {
+        let (sure, borne) = of(f64::INFINITY, 1.0, lost_load);
+        assert!(sure[0] > 1.5 && borne >= 1.0, "{sure:?} {borne}");
+        for limit in [1.0, 1.15, 1.4] {
+            let (worst, borne) = of(limit, 1.0, lost_load);
+            println!("limit {limit}: {:.4} at once, {:.4} settled", worst[0], worst[19]);
+            assert!(borne < 1.0, "{borne}");
+            for found in [worst[0], worst[19]] {
+                assert!((found - limit).abs() < 1e-9, "{limit}: {found}");
+            }
+            let (slow, _) = of(limit, 0.2, lost_load);
+            assert!(slow.iter().all(|found| *found < limit + 1e-9), "{limit}: {slow:?}");
+        }
+    }
+}

@@ -406,7 +406,9 @@ fn a_free_step_is_the_closed_form() {
         RelaxedSettings { amplitude_limit_volt: vec![1.0], ..settings.clone() },
         RelaxedSettings { rate_limit_volt: 0.0, ..settings.clone() },
         RelaxedSettings { flap_survival: 0.0, ..settings.clone() },
-        RelaxedSettings { flap_survival: 1.1, ..settings },
+        RelaxedSettings { flap_survival: 1.1, ..settings.clone() },
+        RelaxedSettings { dead_flap_cost: 0.99, ..settings.clone() },
+        RelaxedSettings { dead_flap_cost: f64::NAN, ..settings },
     ] {
         assert!(RelaxedController::new(&layout, 12, bad).is_err());
     }
