@@ -2,7 +2,9 @@
 
 use crate::names::{flap_name, set_name};
 use report_page::{Section, csv_of};
-use rotor_study::{BladeCost, ControlCost, FlapCost, FrontAgainst, FrontLine, FrontState};
+use rotor_study::{
+    BladeCost, ControlCost, FlapCost, FrontAgainst, FrontLine, FrontState, MeanLoads,
+};
 use std::fmt::Write as _;
 
 /// Harmonics of the blade loads in a table; the CSV has all.
@@ -24,9 +26,12 @@ fn optional(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), three)
 }
 
-/// Costs of the flaps and of the blade, as tables; none without a controlled set.
+/// Costs of the flaps, of the blade and of the shaft, as tables; none without a controlled set.
 pub fn cost_sections(costs: &[ControlCost]) -> Vec<Section> {
-    if costs.is_empty() { Vec::new() } else { vec![flap_section(costs), blade_section(costs)] }
+    if costs.is_empty() {
+        return Vec::new();
+    }
+    [flap_section(costs), blade_section(costs)].into_iter().chain(mean_section(costs)).collect()
 }
 
 fn flap_section(costs: &[ControlCost]) -> Section {
@@ -127,6 +132,47 @@ fn blade_section(costs: &[ControlCost]) -> Section {
     }
 }
 
+/// A mean load by name and unit, and how it is taken from a rotor.
+type MeanLoad = (&'static str, &'static str, fn(&MeanLoads) -> f64);
+
+/// The mean loads that are shown.
+const MEAN_LOADS: [MeanLoad; 7] = [
+    ("shaft power", "kW", |own| 1e-3 * own.shaft_power_watt),
+    ("FX", "N", |own| own.hub_force_newton[0]),
+    ("FY", "N", |own| own.hub_force_newton[1]),
+    ("FZ", "N", |own| own.hub_force_newton[2]),
+    ("MX", "N m", |own| own.hub_moment_newton_metre[0]),
+    ("MY", "N m", |own| own.hub_moment_newton_metre[1]),
+    ("MZ", "N m", |own| own.hub_moment_newton_metre[2]),
+];
+
+/// Mean loads on the hub and power of the shaft; none of a result of an earlier version.
+fn mean_section(costs: &[ControlCost]) -> Option<Section> {
+    let known: Vec<(&ControlCost, &[MeanLoads; 2])> =
+        costs.iter().filter_map(|cost| Some((cost, cost.mean_loads.as_ref()?))).collect();
+    let (_, [rest, _]) = known.first()?;
+    // tenths, or thousandths of a power in kW, without the sign of a zero
+    let shown = |unit: &str, value: f64| {
+        if unit == "kW" { three(value + 0.0) } else { format!("{:.1}", value + 0.0) }
+    };
+    let row = |set: String, actuator: &str, of: &dyn Fn(&MeanLoad) -> f64| {
+        let numbers = MEAN_LOADS.iter().map(|load| shown(load.1, of(load)));
+        [set, actuator.to_owned()].into_iter().chain(numbers).collect::<Vec<String>>()
+    };
+    let without = row("none".to_owned(), "-", &|load| (load.2)(rest));
+    let changed = known.iter().map(|(cost, [rest, own])| {
+        row(set_name(&cost.harmonics), &cost.actuator, &|load| (load.2)(own) - (load.2)(rest))
+    });
+    let names = MEAN_LOADS.iter().map(|(name, unit, _)| format!("{name} {unit}"));
+    let header = ["per rev", "actuator"].map(str::to_owned).into_iter().chain(names);
+    Some(Section {
+        title: "What control costs: shaft and trim".to_owned(),
+        text: "Mean loads on the hub and power of the shaft without control (first row), and what control adds. Pilot controls are held: a pilot would trim the added loads away.".to_owned(),
+        header: header.collect(),
+        rows: std::iter::once(without).chain(changed).collect(),
+    })
+}
+
 /// Fronts as tables: what a fall of `J` costs; none without a front.
 pub fn front_sections(fronts: &[FrontLine]) -> Vec<Section> {
     let of = |against: FrontAgainst| {
@@ -218,7 +264,13 @@ pub fn costs_csv(costs: &[ControlCost]) -> String {
         });
         let whole = ("power_given".to_owned(), "W", cost.given_of_all_blades_watt);
         let whole = (cost, "all blades".to_owned(), whole.0, whole.1, None, whole.2);
-        std::iter::once(whole).chain(flaps).chain(loads)
+        let mean = cost.mean_loads.iter().flat_map(move |[rest, own]| {
+            MEAN_LOADS.iter().map(move |(name, unit, of)| {
+                let quantity = name.replace(' ', "_");
+                (cost, "hub mean".to_owned(), quantity, *unit, Some(of(rest)), of(own))
+            })
+        });
+        std::iter::once(whole).chain(flaps).chain(loads).chain(mean)
     });
     csv_of(
         rows,
@@ -306,7 +358,29 @@ mod tests {
                 half_peak_to_peak: [40.0, 160.0],
                 amplitudes: vec![[30.0, 31.0], [0.0, 2.0]],
             }],
+            mean_loads: None,
         }
+    }
+
+    #[test]
+    fn mean_loads_are_told_as_what_control_adds() {
+        let of = |power: f64, lift: f64| MeanLoads {
+            shaft_power_watt: power,
+            hub_force_newton: [0.0, 0.0, lift],
+            ..MeanLoads::default()
+        };
+        let own =
+            ControlCost { mean_loads: Some([of(3e5, 2e4), of(3.015e5, 1.99e4)]), ..cost(None) };
+        assert_eq!(cost_sections(&[cost(None)]).len(), 2);
+        let sections = cost_sections(std::slice::from_ref(&own));
+        let rows = &sections[2].rows;
+        assert_eq!(rows[0], ["none", "-", "300.000", "0.0", "0.0", "20000.0", "0.0", "0.0", "0.0"]);
+        assert_eq!(
+            rows[1],
+            ["3+4", "hysteretic", "1.500", "0.0", "0.0", "-100.0", "0.0", "0.0", "0.0"]
+        );
+        let csv = costs_csv(&[own]);
+        assert!(csv.contains("3+4,hysteretic,hub mean,shaft_power,kW,3e2,3.015e2"), "{csv}");
     }
 
     #[test]
