@@ -5,8 +5,8 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
+use rotor_case::Case;
 use rotor_flight::{FlightError, FlightState, RotorPath};
-use rotor_study::case::Case;
 
 fn main() -> Result<(), FlightError> {
     let path = RotorPath::new(&Case::default(), &[0.20, 0.25, 0.30])?;

@@ -3,8 +3,8 @@
 use crate::FlightError;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::Case;
 use rotor_response::{ResponseError, SixLoads, hub_loads};
-use rotor_study::case::Case;
 use rotor_study::{HUB_OUTPUTS, TrimmedRotor, UnlikeSolver, scaled, weighted};
 
 /// Amplitude of the motions that a slope is read from, both ways, deg.

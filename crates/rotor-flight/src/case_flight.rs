@@ -3,7 +3,7 @@
 use crate::{FlapFailure, Flight, FlightError, FlightPoint, Guidance, OwnActuator, RotorPath};
 use hhc_control::{ControlLayout, EstimatorSettings, FeedbackLaw, LoadWeights, RelaxedSettings};
 use preisach_dyn::{ActuatorModel, VoltageRange};
-use rotor_study::case::{
+use rotor_case::{
     Case, FailedOn, FlapActuator, FlightController, FlightValues, Notice, TrimValues,
 };
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, least_effort, output_weights};
@@ -166,6 +166,7 @@ pub(crate) fn unguided<'a>(
         rate_limit_volt: values.rate_limit_volt,
         rate_weight: values.rate_weight,
         flap_survival: 0.01 * values.flap_survival_percent,
+        dead_flap_cost: 0.01 * values.dead_flap_percent,
         ..RelaxedSettings::of_layout(&layout)
     };
     let own = |(index, own): (usize, &FlapActuator)| {

@@ -2,9 +2,9 @@
 
 use hhc_control::ControlError;
 use preisach_dyn::PreisachError;
+use rotor_case::HandedTError;
 use rotor_response::ResponseError;
 use rotor_study::StudyError;
-use rotor_study::case::HandedTError;
 
 /// Rejected input and numerical failures of a flight.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -4,7 +4,7 @@ use crate::FlightError;
 use hhc_control::{ControlLayout, HarmonicAnalyser};
 use preisach_dyn::{ActuatorMemory, ActuatorModel, StartState, Stepper};
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::Bias;
+use rotor_case::Bias;
 use std::f64::consts::TAU;
 
 /// Samples of a revolution, and harmonics of the motion that the rotor feels.

@@ -6,8 +6,9 @@ use hhc_control::{ControlLayout, RelaxedSettings, TMatrix};
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_study::case::HandedSet;
-use rotor_study::{Bias, HUB_OUTPUTS};
+use rotor_case::Bias;
+use rotor_case::HandedSet;
+use rotor_study::HUB_OUTPUTS;
 use std::sync::Arc;
 
 /// Revolutions that settle flaps and bias before T is identified.

@@ -6,7 +6,7 @@ use crate::{
 };
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
-use rotor_study::case::{Case, FlightController, FlightValues};
+use rotor_case::{Case, FlightController, FlightValues};
 use serde::Serialize;
 
 /// Shares of the draws at which a spread is given: all but one in twenty lie below the last, and above the first.

@@ -4,7 +4,7 @@ use crate::FlightError;
 use crate::blades::{AskedBlade, OwnBlade, check_orders, highest};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
-use rotor_study::case::Case;
+use rotor_case::Case;
 use rotor_study::{FlapAuthority, HUB_OUTPUTS, TrimmedRotor};
 use std::collections::BTreeMap;
 

@@ -5,8 +5,8 @@ mod common;
 
 use common::actuator;
 use hhc_control::ControlLayout;
+use rotor_case::Bias;
 use rotor_flight::FlapMarch;
-use rotor_study::Bias;
 
 #[test]
 fn a_held_bias_stays_and_a_centred_one_is_led() {

@@ -5,8 +5,8 @@
 mod common;
 
 use common::actuator;
+use rotor_case::{Case, FlightController, FlightValues};
 use rotor_flight::{FlyingCase, Guidance, fly};
-use rotor_study::case::{Case, FlightController, FlightValues};
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 use std::alloc::System;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -5,9 +5,9 @@ mod common;
 
 use common::actuator;
 use preisach_dyn::ActuatorModel;
+use rotor_case::{ActuatorChoice, BiasChoice, Case, FlightValues, InflowChoice};
 use rotor_export::Document;
 use rotor_flight::{FlightError, FlownCase, FlyingCase, exported_case, handed_t};
-use rotor_study::case::{ActuatorChoice, BiasChoice, Case, FlightValues, InflowChoice};
 use std::sync::Arc;
 
 fn case() -> Case {

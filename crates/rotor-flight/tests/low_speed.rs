@@ -1,8 +1,8 @@
 //! Means at an advance ratio where relaxation finds no periodic wake.
 #![expect(clippy::unwrap_used, reason = "a test that cannot unwrap has failed")]
 
+use rotor_case::{AttachedFlowModel, Case, FreeWakeValues, InflowChoice, TrimValues};
 use rotor_study::TrimmedRotor;
-use rotor_study::case::{AttachedFlowModel, Case, FreeWakeValues, InflowChoice, TrimValues};
 use trim::{InTimeSettings, Interval, SteadyInTime, SteadySettings, WakeOutcome, steady_in_time};
 
 /// The paper's rotor at mu 0.05 on a coarse grid, the weight over that of the case.

@@ -5,8 +5,8 @@ mod common;
 
 use common::actuator;
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
+use rotor_case::{Case, FlightController, FlightValues, HandedSet, HandedT};
 use rotor_flight::{FlightState, FlownCase, FlyingCase, Guidance, MarginPoint, fly};
-use rotor_study::case::{Case, FlightController, FlightValues, HandedSet, HandedT};
 use std::sync::Arc;
 
 /// An ideal actuator whose voltage may grow for long.
@@ -33,8 +33,9 @@ fn values(harmonics: &[usize]) -> FlightValues {
         controllers: vec![FlightController::Fixed, FlightController::Adaptive],
         thrust_step: None,
         failed_flap: None,
-        // theory knows the radius of flaps that all act
+        // theory knows the radius of flaps that all act, and of steps that nothing shortens
         flap_survival_percent: 100.0,
+        dead_flap_percent: 1e6,
         ..FlightValues::default()
     }
 }

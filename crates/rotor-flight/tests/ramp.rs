@@ -6,9 +6,9 @@ mod common;
 use common::actuator;
 use hhc_control::{ControlLayout, EstimatorSettings, RelaxedSettings};
 use preisach_dyn::ActuatorModel;
+use rotor_case::Bias;
+use rotor_case::{Case, FlightValues, HandedSet};
 use rotor_flight::{FlapFailure, Flight, FlightPoint, Guidance, RotorPath, fly};
-use rotor_study::Bias;
-use rotor_study::case::{Case, FlightValues, HandedSet};
 
 const SEEDS: u64 = 20;
 const KNOTS: [f64; 4] = [0.15, 0.20, 0.25, 0.30];

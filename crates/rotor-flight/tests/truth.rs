@@ -7,10 +7,11 @@ use common::actuator;
 use hhc_control::{ControlLayout, RelaxedSettings};
 use preisach_dyn::ActuatorModel;
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::Bias;
+use rotor_case::Case;
 use rotor_flight::{FlapMarch, Flight, FlightState, Guidance, RotorPath, fly};
 use rotor_response::{Condition, InstantDrive, RotorInTime};
-use rotor_study::case::Case;
-use rotor_study::{Bias, HUB_OUTPUTS, TrimmedRotor, scaled, weighted};
+use rotor_study::{HUB_OUTPUTS, TrimmedRotor, scaled, weighted};
 
 /// The knots of a flight section by default: 0.15 to 0.30 in twenty parts.
 const PARTS: u32 = 20;

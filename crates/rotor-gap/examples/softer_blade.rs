@@ -6,9 +6,9 @@
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
 use measured_data::{DatasetKind, PointData, Source};
+use rotor_case::Case;
 use rotor_gap::CaseQuestion;
 use rotor_gap::blade::{Frequencies, diagnose_blade, usual_blade_uncertain};
-use rotor_study::case::Case;
 use rotor_study::{ModesQuestion, numbered, rotating_modes};
 use std::fmt::Write;
 

@@ -1,7 +1,7 @@
 //! What is asked of a case and what is found, the same for blades and sections.
 
 use model_gap::points::{PointFinding, PointTable};
-use rotor_study::case::{Case, UncertainField};
+use rotor_case::{Case, UncertainField};
 
 /// What is asked of the simulation of a case.
 pub struct CaseQuestion<'a> {

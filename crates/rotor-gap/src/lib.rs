@@ -1,6 +1,6 @@
 //! Rotors as data that discovery works on: points of test, causes, diagnosis.
 //!
-//! Floor 5: it is handed a case and what was measured, and gives findings back. It knows no file and no terminal.
+//! Floor 6: it is handed a case and what was measured, and gives findings back. It knows no file and no terminal.
 //!
 //! | kind of data | module |
 //! |---|---|

@@ -1,8 +1,8 @@
 //! What the blade in a case may lack, of a rotor and of a blade alone alike.
 
 use model_gap::points::{CauseParameter, PointCause, Shown};
+use rotor_case::{Case, RotorValues, times};
 use rotor_fem::Joint;
-use rotor_study::case::{Case, RotorValues, times};
 
 /// A model that is a case with something beside.
 pub(crate) trait OfCase: Clone + 'static {

@@ -4,9 +4,9 @@
 use measured_data::{DatasetKind, PointData, Source};
 use model_gap::SplitMix;
 use model_gap::discovery::{Confidence, Verdict};
+use rotor_case::Case;
 use rotor_gap::blade::{Frequencies, diagnose_blade, usual_blade_uncertain};
 use rotor_gap::{CaseDiagnosis, CaseQuestion};
-use rotor_study::case::Case;
 use rotor_study::{ModesQuestion, numbered, rotating_modes};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;

@@ -5,12 +5,12 @@ use measured_data::{PointData, Scatter, Source};
 use model_gap::SplitMix;
 use model_gap::discovery::Verdict;
 use rotor_base::mean_square;
-use rotor_gap::{RotorDiagnosis, RotorModel, RotorQuestion, Sweep, diagnose, predict};
-use rotor_study::case::{
+use rotor_case::{
     ActuatorChoice, AttachedFlowModel, Case, CompressibilityChoice, DissimilarBlade, FlapValues,
     FreeWakeValues, InflowChoice, ModeNumbers, RotorValues, TrimValues, UncertainField,
     WindTunnelTrim,
 };
+use rotor_gap::{RotorDiagnosis, RotorModel, RotorQuestion, Sweep, diagnose, predict};
 use std::fmt::Write;
 
 /// A rotor of few modes in a wind tunnel, as it is simulated.

@@ -11,7 +11,7 @@ use preisach_dyn::{
     ActuatorLaw, ActuatorModel, Calibration, DynamicParameters, DynamicPreisach, PlayMap,
     PreisachError, PreisachGrid, RateForm, TimeOrder, VoltageRange,
 };
-use rotor_study::case::{Case, ControlActuator};
+use rotor_case::{Case, ControlActuator};
 use rotor_study::{Drives, TrimmedRotor, control_all};
 use std::sync::Arc;
 

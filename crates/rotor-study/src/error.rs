@@ -3,6 +3,7 @@
 use crate::flaps::PlantError;
 use hhc_control::{ControlError, RunError};
 use preisach_dyn::PreisachError;
+use rotor_case::ModelError;
 use rotor_fem::FemError;
 use rotor_response::ResponseError;
 use trim::TrimError;
@@ -94,6 +95,15 @@ pub enum StudyError {
         /// Name of the actuator asked for.
         actuator: &'static str,
     },
+}
+
+impl From<ModelError> for StudyError {
+    fn from(error: ModelError) -> Self {
+        match error {
+            ModelError::Blade { field, source } => Self::Blade { field, source },
+            ModelError::Response { field, source } => Self::Response { field, source },
+        }
+    }
 }
 
 /// Harmonics in one word: `2+3`.

@@ -1,12 +1,11 @@
 //! Studies of a rotor with driven trailing-edge flaps: values in, values out.
 //!
-//! Floor 4: a [`case::Case`] holds the values of a rotor, its flaps and its control; a [`TrimmedRotor`] flies it; a
+//! Floor 5: a [`Case`](rotor_case::Case) holds the values of a rotor, its flaps and its control; a [`TrimmedRotor`] flies it; a
 //! [`RotorPlant`] answers voltages with hub loads; [`control_all`] closes the loop over it. No file, no terminal: an
 //! error names the field of the case that is at fault ([`StudyError::field`]), who has read the case adds the line.
 //!
 //! | idea | module |
 //! |---|---|
-//! | values of a case, their ranges, the models built from them, plausibility warnings | [`case`] |
 //! | from a voltage to the motion of a flap; hinge moment, power | `flaps` |
 //! | the rotor in trim, its inflow, T of the linearised rotor | `rotor` |
 //! | both as the `Plant` of a controller: outputs, limits, tangents | `plant` |
@@ -18,7 +17,6 @@
 //! | measured airloads, tip motion and vortices beside the computed ones | `measured` |
 
 mod blade;
-pub mod case;
 mod control;
 mod costs;
 mod error;

@@ -1,8 +1,8 @@
 //! Hub loads, their cost `J_Z` and what the figures of a case share.
 
-use crate::case::{ActuatorValues, Case, ControlValues, LoadScaleChoice};
 use hhc_control::reduction_percent;
 use rotor_base::RotorScales;
+use rotor_case::{ActuatorValues, Case, ControlValues, LoadScaleChoice};
 use rotor_response::RotorModel;
 use serde::{Deserialize, Serialize};
 

@@ -1,9 +1,5 @@
 //! How the reductions move with the assumptions the paper leaves open.
 
-use crate::case::{
-    AttachedFlowModel, Case, ControllerChoice, EffortChoice, FreeWakeValues, InflowChoice,
-    LoadScaleChoice, NearWakeMotion, RolledUpChoice, RotorValues, TrimValues, times,
-};
 use crate::control::{Drives, ideal_control};
 use crate::error::StudyError;
 use crate::flaps::FlapDrive;
@@ -11,6 +7,10 @@ use crate::loads::{HubLoads, Setting, loads_cost};
 use crate::rotor::TrimmedRotor;
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
+use rotor_case::{
+    AttachedFlowModel, Case, ControllerChoice, EffortChoice, FreeWakeValues, InflowChoice,
+    LoadScaleChoice, NearWakeMotion, RolledUpChoice, RotorValues, TrimValues, times,
+};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -430,7 +430,7 @@ impl Assumptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::WindTunnelTrim;
+    use rotor_case::WindTunnelTrim;
 
     /// The case under limits of a cone program with T about the present control.
     fn controllers_case() -> Case {

@@ -1,12 +1,12 @@
 //! A case trimmed in its free wake, with the geometry and the inflow to look at.
 
-use crate::case::{
-    Case, CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice, InflowChoice,
-    InflowValues, PrescribedCirculation,
-};
 use crate::error::StudyError;
 use crate::loads::HubLoads;
 use crate::rotor::{DiskLoads, TrimmedRotor, descent_warning, passage_warning, wake_warnings};
+use rotor_case::{
+    Case, CirculationChoice, CirculationShape, FreeWakeValues, GeometryChoice, InflowChoice,
+    InflowValues, PrescribedCirculation,
+};
 use rotor_wake::{
     BladeLines, CirculationMap, ClosestPassage, FlightState, FreeWake, InducedInflow, WakeError,
     WakeRotor, momentum_inflow,

@@ -79,7 +79,7 @@ pub fn check_file(path: &Path) -> Result<CheckResult, Problems> {
         warnings.extend(check_actuator_source(&loaded)?);
         warnings.extend(with_flap_actuators(&loaded)?.1);
         let doubts = rotor_study::refuse_resonance(&loaded.case)
-            .and_then(|()| loaded.case.plausibility_warnings());
+            .and_then(|()| Ok(loaded.case.plausibility_warnings()?));
         let doubts = doubts.map_err(|error| {
             let (place, message) = match loaded.located(error) {
                 SimError::Study { place, source } => (place, source.cause()),

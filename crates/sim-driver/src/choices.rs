@@ -5,7 +5,7 @@ use bench_study::identification::ModelChoice;
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use preisach_dyn::identify::Family;
-use rotor_study::case::variant_names;
+use rotor_case::variant_names;
 use serde::de::value::{Error, StrDeserializer};
 use serde::de::{DeserializeOwned, IntoDeserializer};
 

@@ -1,6 +1,6 @@
 //! Case files, data files, studies and the `hhc` command of rotor-hhc.
 //!
-//! Floor 6: case files with their lines, stored results and the terminal. What it hands down are validated
+//! Floor 7: case files with their lines, stored results and the terminal. What it hands down are validated
 //! values; what it gets back are plain results.
 //!
 //! | idea | module |
@@ -8,7 +8,7 @@
 //! | problems of user files, each with file, line, field and remedy | [`problem`] |
 //! | reading and atomic writing, RON, measured tables, shipped files | [`files`] |
 //! | what an import prints | [`import`] |
-//! | case files: the values of [`rotor_study::case`] with the lines they stand at | [`case`] |
+//! | case files: the values of [`rotor_case`] with the lines they stand at | [`case`] |
 //! | the actuators of a case, their use; identified and stored by [`bench_study`] | [`actuator`], [`actuator_use`] |
 //! | one physics alone | [`section`]; modes, root pitch and wake of [`rotor_study`] in [`print`](mod@print), told by [`study_text`] |
 //! | a whole case | [`run`], stored and told in figures by [`results`]; over advance ratios in [`sweep`] |

@@ -123,7 +123,7 @@ pub fn run_trimmed(
     let found = trimmed.trim();
     let (theta0_rad, most) = (found.controls.theta0_rad, trimmed.largest_section_lift());
     let warned = loaded.case.warnings_in_flight(trimmed.rotor(), theta0_rad, &found.rotor, most);
-    warnings.extend(loaded.in_words(warned.map_err(failed)?));
+    warnings.extend(loaded.in_words(warned.map_err(|error| loaded.located(error))?));
     warnings.extend(trimmed.wake().into_iter().flat_map(wake_warnings));
     warnings.extend(unstable());
     let each_unlike = each_unlike_blade(&loaded.case, &trimmed).map_err(failed)?;

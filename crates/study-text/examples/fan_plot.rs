@@ -5,7 +5,7 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "the example prints what it computes")]
 
-use rotor_study::case::Case;
+use rotor_case::Case;
 use rotor_study::{ModesQuestion, StudyError, rotating_modes};
 use study_text::{fan_csv, modes_text};
 

@@ -1,6 +1,6 @@
 //! Results of a study of a rotor as text: tables for people, CSV and VTK for programs.
 //!
-//! Floor 5: it is handed values and gives texts back. Who writes or prints them knows the names of files and the terminal.
+//! Floor 6: it is handed values and gives texts back. Who writes or prints them knows the names of files and the terminal.
 //!
 //! | idea | module |
 //! |---|---|

@@ -2,7 +2,7 @@
 
 use crate::revolution::{Revolution, at_nodes, revolution_files};
 use report_page::{Sheet, csv_of, table_of};
-use rotor_study::case::Case;
+use rotor_case::Case;
 use rotor_study::{FoundWake, HubLoads, WakeResult};
 use rotor_wake::{
     CirculationMap, FilamentStates, FreeWake, InducedInflow, SegmentState, Vec3, VortexCrossing,

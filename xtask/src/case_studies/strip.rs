@@ -3,7 +3,7 @@
 use super::figure::{Axis, Mark, Panel, Series, drawn};
 use super::{Done, Run, Study, Teller, Told, answers, table};
 use crate::XtaskError;
-use rotor_study::case::{Case, CouplingsChoice, times};
+use rotor_case::{Case, CouplingsChoice, times};
 use rotor_study::{ModesQuestion, modes_at_speeds};
 
 pub(super) const STUDY: Study = Study {

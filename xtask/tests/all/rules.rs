@@ -134,13 +134,13 @@ fn a_reserved_crate_below_the_driver_is_a_fault() {
 fn a_member_needs_a_floor_the_house_has() {
     let mut house = sound_house();
     house[2].floor = None;
-    house.push(member("attic", 8, &[]));
+    house.push(member("attic", 10, &[]));
     let faults = check(&house);
     assert_eq!(
         faults,
         [
             LayerFault::NoFloor { member: "flap-aero".to_owned() },
-            LayerFault::UnknownFloor { member: "attic".to_owned(), floor: 8 }
+            LayerFault::UnknownFloor { member: "attic".to_owned(), floor: 10 }
         ]
     );
 }

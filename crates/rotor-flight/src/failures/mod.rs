@@ -9,8 +9,8 @@ use hhc_control::{
 };
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_case::{Case, FlightValues};
 use rotor_response::ResponseError;
-use rotor_study::case::{Case, FlightValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, Setting, TrimmedRotor, least_effort, loads_cost, scaled};
 use serde::Serialize;
 
@@ -386,6 +386,7 @@ impl Controlled {
             rate_weight: study.values.rate_weight,
             // what has failed is known; what is left is counted on
             flap_survival: 1.0,
+            dead_flap_cost: f64::INFINITY,
             gain: study.values.gain,
             amplitude_limit_volt: (0..layout.pairs()).map(limit).collect(),
             rate_limit_volt: study.values.rate_limit_volt,

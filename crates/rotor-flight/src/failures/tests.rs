@@ -2,8 +2,8 @@
 
 use super::*;
 use FailureControl::{AlikeNotTold, AlikeTold, EachTold};
+use rotor_case::{AttachedFlowModel, InflowChoice};
 use rotor_response::InflowState;
-use rotor_study::case::{AttachedFlowModel, InflowChoice};
 
 fn case() -> Case {
     let mut case = Case { advance_ratio: 0.3, ..Case::default() };

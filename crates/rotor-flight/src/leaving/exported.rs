@@ -5,8 +5,8 @@ use super::settings::{self, actuator_note, inflow_note};
 use crate::case_flight::{flight_of, guidance_of, path_of, ranged, unguided};
 use crate::{Flight, FlightError, FlightState, Guidance};
 use preisach_dyn::ActuatorModel;
+use rotor_case::{Case, FlightController, FlightValues};
 use rotor_export::{Axis, ControllerSpec, Document, LabelledArray, TKnowledge};
-use rotor_study::case::{Case, FlightController, FlightValues};
 use rotor_study::{HUB_OUTPUTS, HubLoads, TrimmedRotor};
 
 /// Highest harmonic of the flaps that the rotor along a path is linearised for.

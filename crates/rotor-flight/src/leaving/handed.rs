@@ -3,8 +3,8 @@
 use super::labels::{AFTER_STEP, POINT_AT, T_OF, control_labels, load_axis, load_labels};
 use super::settings::mismatches;
 use crate::FlightError;
+use rotor_case::{Case, HandedSet, HandedT};
 use rotor_export::{Axis, Document, LabelledArray};
-use rotor_study::case::{Case, HandedSet, HandedT};
 
 /// T of a document for the controllers of a case.
 ///

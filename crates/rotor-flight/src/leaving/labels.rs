@@ -1,8 +1,8 @@
 //! Names of arrays and of what their indices run over.
 
+use rotor_case::Case;
 use rotor_export::Axis;
 use rotor_study::HubLoads;
-use rotor_study::case::Case;
 
 /// Names of the loads, without their unit.
 pub(super) fn load_labels(case: &Case) -> Vec<String> {

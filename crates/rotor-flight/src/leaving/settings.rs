@@ -2,10 +2,8 @@
 //! with the case that it is handed to.
 
 use super::labels::load_labels;
+use rotor_case::{ActuatorChoice, BiasChoice, Case, InflowChoice, LoadScaleChoice, TInflowChoice};
 use rotor_export::{Axis, Document, LabelledArray};
-use rotor_study::case::{
-    ActuatorChoice, BiasChoice, Case, InflowChoice, LoadScaleChoice, TInflowChoice,
-};
 
 /// Names of the arrays.
 const SETTINGS: &str = "settings";

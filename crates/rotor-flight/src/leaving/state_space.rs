@@ -4,10 +4,10 @@ use super::exported::dissimilar_note;
 use super::labels::load_axis;
 use crate::{FlightError, RotorPath};
 use nalgebra::DMatrix;
+use rotor_case::Case;
 use rotor_export::{Axis, Document, LabelledArray};
 use rotor_response::{BladeStateSpace, BladesTogether};
 use rotor_study::HubLoads;
-use rotor_study::case::Case;
 
 /// Blades from which the coefficients of all together do not change with the azimuth in hover.
 const LEAST_BLADES: usize = 3;

@@ -1,6 +1,6 @@
 //! A flight in sentences.
 
-use rotor_study::case::{Case, FailedOn, FlapActuator, FlightValues, Notice};
+use rotor_case::{Case, FailedOn, FlapActuator, FlightValues, Notice};
 
 /// What truth is and what happens in a flight, in sentences; of actuators the title of their data, empty for the ideal one.
 pub fn flight_notes(case: &Case, values: &FlightValues, actuator: &str) -> Vec<String> {
@@ -39,6 +39,12 @@ pub fn flight_notes(case: &Case, values: &FlightValues, actuator: &str) -> Vec<S
         notes.push(format!(
             "Flaps: the controllers count on {} % of each, so that one that fails shakes the hub less.",
             values.flap_survival_percent
+        ));
+    }
+    if values.dead_flap_percent < 1e6 {
+        notes.push(format!(
+            "Flaps: by T no one that stops leaves J above {} % of that without control; the control goes for less where it would.",
+            values.dead_flap_percent
         ));
     }
     let (noise, seed) = (values.noise_percent, values.seed);

@@ -3,7 +3,7 @@
 pub(crate) mod text;
 
 use crate::leaving::dissimilar_note;
-use rotor_study::case::{Case, CirculationChoice, DynamicStallChoice, InflowChoice, InflowValues};
+use rotor_case::{Case, CirculationChoice, DynamicStallChoice, InflowChoice, InflowValues};
 use rotor_study::{HubLoads, StudyError, TrimmedRotor, wake_warnings};
 use rotor_wake::{FlightState, WakeSymmetry, momentum_inflow};
 use serde::Serialize;

@@ -6,8 +6,8 @@ mod common;
 mod one_blade;
 mod unlike;
 
+use rotor_case::{AttachedFlowModel, Case};
 use rotor_study::HUB_OUTPUTS;
-use rotor_study::case::{AttachedFlowModel, Case};
 
 const ADVANCE_RATIO: f64 = 0.3;
 const BLADES: usize = 4;

@@ -3,9 +3,9 @@
 use crate::common::actuator;
 use crate::{ADVANCE_RATIO, BLADES, case, of_order, size};
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::{FailedFlap, FailedOn, FlightController, FlightValues, Notice};
 use rotor_flight::{FlightError, FlightPoint, FlightState, FlyingCase, RotorPath};
 use rotor_response::hub_loads;
-use rotor_study::case::{FailedFlap, FailedOn, FlightController, FlightValues, Notice};
 use rotor_study::{TrimmedRotor, scaled};
 
 /// One blade moves its inboard flap otherwise: at every order the loads that this adds are those of the nonlinear rotor whose
@@ -55,6 +55,8 @@ fn flown(notice: Notice, on: FailedOn, kept_percent: f64) -> Vec<FlightPoint> {
         noise_percent: 0.0,
         duration_s: 14.0,
         amplitude_limit_volt: 60.0,
+        // what binds is the limit of the amplitude alone
+        dead_flap_percent: 1e6,
         controllers: vec![FlightController::Fixed],
         failed_flap: Some(FailedFlap {
             flap: 1,

@@ -4,10 +4,8 @@ use crate::common::actuator;
 use crate::{ADVANCE_RATIO, BLADES, case, of_order, size};
 use preisach_dyn::{ActuatorLaw, ActuatorModel, Calibration, LinearGain, VoltageRange};
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::{Case, DissimilarBlade, FlapActuator, FlightController, FlightValues, Notice};
 use rotor_flight::{FlightPoint, FlightState, FlyingCase, RotorPath};
-use rotor_study::case::{
-    Case, DissimilarBlade, FlapActuator, FlightController, FlightValues, Notice,
-};
 use rotor_study::{TrimmedRotor, scaled};
 use std::sync::Arc;
 
@@ -84,6 +82,7 @@ fn level(controllers: Vec<FlightController>) -> FlightValues {
         duration_s: 14.0,
         amplitude_limit_volt: 60.0,
         controllers,
+        dead_flap_percent: 1e6,
         ..FlightValues::default()
     }
 }

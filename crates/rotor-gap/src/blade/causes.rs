@@ -3,8 +3,8 @@
 use super::BladeModel;
 use crate::properties;
 use model_gap::points::{CauseParameter, PointCause, Shown};
+use rotor_case::{Case, times};
 use rotor_fem::Joint;
-use rotor_study::case::{Case, times};
 
 /// A cause, ready for one blade.
 pub type BladeCause = PointCause<BladeModel>;

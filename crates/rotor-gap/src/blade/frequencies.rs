@@ -3,7 +3,7 @@
 use crate::error::RotorGapError;
 use measured_data::{PointData, Scatter};
 use model_gap::points::{Grid, Point};
-use rotor_study::case::ModeNumbers;
+use rotor_case::ModeNumbers;
 
 const SPEED: &str = "rotor_speed_rpm";
 const MODE: &str = "mode";

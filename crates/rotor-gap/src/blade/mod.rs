@@ -18,7 +18,7 @@ use crate::properties::OfCase;
 use crate::rotor::{moved_inputs, with_inputs};
 use measured_data::Scatter;
 use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, channels_of};
-use rotor_study::case::{Case, UncertainField};
+use rotor_case::{Case, UncertainField};
 use rotor_study::{AboutState, ModesQuestion, ModesResult, modes_at_speeds, numbered};
 
 /// What is taken for uncertain where a case says nothing: field and percent.

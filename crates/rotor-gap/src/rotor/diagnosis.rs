@@ -16,7 +16,7 @@ use model_gap::points::{
 use preisach_dyn::ActuatorModel;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::case::{Case, UncertainField};
+use rotor_case::{Case, UncertainField};
 use rotor_study::{FlapDrive, StudyError};
 use std::sync::Arc;
 

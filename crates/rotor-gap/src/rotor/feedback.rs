@@ -3,7 +3,7 @@
 use crate::rotor::model::RotorModel;
 use crate::rotor::sweep::{Sweep, SweepPoint};
 use preisach_dyn::ActuatorModel;
-use rotor_study::case::ControlActuator;
+use rotor_case::ControlActuator;
 use rotor_study::{ControlStudy, Drives, StudyError, TrimmedRotor, control_all};
 use std::collections::BTreeSet;
 use std::sync::Arc;

@@ -8,8 +8,8 @@ use model_gap::points::{Channel, Grid};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries, RotorScales};
+use rotor_case::{Case, PitchHarmonic, TrimValues};
 use rotor_response::RotorSolution;
-use rotor_study::case::{Case, PitchHarmonic, TrimValues};
 use rotor_study::{
     FlapDrive, PlantError, StudyError, TrimmedRotor, WakeStatus, scaled, wake_status,
 };

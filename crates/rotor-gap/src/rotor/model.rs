@@ -2,7 +2,7 @@
 
 use crate::properties::OfCase;
 use rotor_base::Harmonic;
-use rotor_study::case::{Case, TrimValues};
+use rotor_case::{Case, TrimValues};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 

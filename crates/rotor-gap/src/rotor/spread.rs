@@ -2,7 +2,7 @@
 
 use crate::error::RotorGapError;
 use measured_data::{Change, with_field_moved};
-use rotor_study::case::{AttachedFlowModel, Case, InflowChoice, ModeNumbers, UncertainField};
+use rotor_case::{AttachedFlowModel, Case, InflowChoice, ModeNumbers, UncertainField};
 
 /// What is taken for uncertain where a case says nothing: field and percent.
 pub const USUAL_UNCERTAIN: [(&str, f64); 6] = [

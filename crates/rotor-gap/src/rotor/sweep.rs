@@ -5,7 +5,7 @@ use crate::rotor::columns::{Column, Load, PartOf, Reading, Setting};
 use measured_data::{PointColumn, PointData, Scatter};
 use model_gap::points::{Channel, channels_of};
 use rotor_base::Harmonic;
-use rotor_study::case::{Case, TrimValues};
+use rotor_case::{Case, TrimValues};
 
 /// Points of test of a rotor.
 #[derive(Debug, Clone, PartialEq)]

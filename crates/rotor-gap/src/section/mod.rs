@@ -22,7 +22,7 @@ use model_gap::points::{Grid, Instrument, KindFinding, KindQuestion, PointKind, 
 use nalgebra::Complex;
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::case::{Case, CompressibilityChoice, EffectivenessValues};
+use rotor_case::{Case, CompressibilityChoice, EffectivenessValues};
 use section_study::{LoopQuestion, SectionChoice, loop_history, section_response};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

@@ -2,13 +2,13 @@
 
 use crate::blade::loads::{StationLine, station_lines};
 use crate::blade::stability::StabilityLine;
-use crate::case::Case;
 use crate::control::ControlStudy;
 use crate::error::StudyError;
 use crate::flaps::FlapMotion;
 use crate::loads::{HubLoads, Setting, loads_cost};
 use crate::rotor::{TrimmedRotor, UnlikeSolver};
 use rotor_base::HarmonicSeries;
+use rotor_case::Case;
 use rotor_response::ResponseError;
 use serde::{Deserialize, Serialize};
 
@@ -139,8 +139,8 @@ pub fn unlike_warnings(lines: &[UnlikeLine], studies: &[ControlStudy]) -> Vec<St
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{ControlActuator, DissimilarBlade};
     use crate::control::{Drives, control_all};
+    use rotor_case::{ControlActuator, DissimilarBlade};
 
     /// One blade whose flaps are dead: the control found with like blades leaves more, and it is said.
     #[test]

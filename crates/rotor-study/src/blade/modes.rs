@@ -1,9 +1,9 @@
 //! Rotating modes of a blade, and the data of a fan plot.
 
-use crate::case::Case;
 use crate::error::StudyError;
 use nalgebra::DVector;
 use rayon::prelude::*;
+use rotor_case::Case;
 use rotor_fem::{
     AxialMotion, BladeModel, BladeProperties, CoupledMode, EnergyShares, FemError, GyroscopicTerms,
     ModeKind, ModerateBlade, ModerateModel, ModerateSpec, SectionMotion, StaticSettings,

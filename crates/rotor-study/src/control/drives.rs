@@ -1,10 +1,10 @@
 //! The drives of a case and the stroke limits they set.
 
-use crate::case::{Case, StrokeChoice};
 use crate::error::StudyError;
 use crate::flaps::{FlapDrive, FullScale};
 use preisach_dyn::{ActuatorModel, VoltageRange};
 use rayon::prelude::*;
+use rotor_case::{Case, StrokeChoice};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -1,6 +1,5 @@
 //! What the linearised rotor says of a set of harmonics before any control.
 
-use crate::case::{Case, ControlActuator, TInflowChoice};
 use crate::control::drives::Drives;
 use crate::control::set::{ControlSet, least_effort};
 use crate::error::StudyError;
@@ -12,6 +11,7 @@ use hhc_control::{FeedbackLaw, LoadWeights, Plant, RunError, TMatrix, lag_deg, l
 use rayon::prelude::*;
 use rotor_base::series::{only, place, weighted};
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::{Case, ControlActuator, TInflowChoice};
 use rotor_response::{InflowState, ResponseError};
 use serde::{Deserialize, Serialize};
 

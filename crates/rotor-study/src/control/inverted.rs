@@ -1,6 +1,5 @@
 //! The ideal actuator's flap motion made by the identified one, or the best motion within its range of voltages.
 
-use crate::case::{ControlActuator, EffortChoice};
 use crate::control::set::{ControlSet, least_effort};
 use crate::control::study::ControlStudy;
 use crate::error::StudyError;
@@ -11,6 +10,7 @@ use hhc_control::{Controller, Plant, RunError};
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_base::series::{scaled, times};
+use rotor_case::{ControlActuator, EffortChoice};
 
 /// A wanted motion of every flap, deg, and the rotor with what the inverse makes of it.
 type Made = (Vec<HarmonicSeries>, PlantState);

@@ -1,6 +1,5 @@
 //! How a controller that flies stands noise, a wrong T and an actuator that drifts, and how wrong T may be.
 
-use crate::case::{Case, ControlActuator, EffortChoice};
 use crate::control::drives::Drives;
 use crate::control::set::{ControlSet, least_effort};
 use crate::error::StudyError;
@@ -16,6 +15,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 use rotor_base::{Limit, limit};
+use rotor_case::{Case, ControlActuator, EffortChoice};
 use serde::{Deserialize, Serialize};
 
 /// What is disturbed in one flight.

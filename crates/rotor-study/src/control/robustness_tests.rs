@@ -1,7 +1,7 @@
 //! Flights of the maps beside the loop of the study, and what each disturbance does.
 
 use super::*;
-use crate::case::{ControllerChoice, HandedSet, HandedT};
+use rotor_case::{ControllerChoice, HandedSet, HandedT};
 
 fn case() -> Case {
     let mut case = Case::default();

@@ -1,6 +1,5 @@
 //! Flaps and root pitch on one rotor, compared at equal reduction of `J_Z`.
 
-use crate::case::{Case, ControlActuator, EffortChoice};
 use crate::control::drives::Drives;
 use crate::control::set::ControlSet;
 use crate::error::StudyError;
@@ -14,6 +13,7 @@ use hhc_control::{
 use rayon::prelude::*;
 use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales};
+use rotor_case::{Case, ControlActuator, EffortChoice};
 use rotor_response::{HingeMoment, RotorSolution, StationLoads};
 use serde::{Deserialize, Serialize};
 

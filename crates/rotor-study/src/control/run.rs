@@ -1,6 +1,5 @@
 //! One case from trim to controlled vibration.
 
-use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice};
 use crate::control::drives::Drives;
 use crate::control::set::{ControlSet, acceptance, close_loop};
 use crate::control::study::ControlStudy;
@@ -9,6 +8,7 @@ use crate::plant::RotorPlant;
 use crate::rotor::TrimmedRotor;
 use hhc_control::{Controller, Plant, TMatrix, identify_t};
 use rayon::prelude::*;
+use rotor_case::{Case, ControlActuator, ControllerChoice, EffortChoice};
 
 /// Accuracy of the part of a voltage that is taken over.
 const TAKEN_OVER_TOLERANCE: f64 = 1e-4;

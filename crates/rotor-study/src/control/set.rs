@@ -1,6 +1,5 @@
 //! One set of harmonics under control: its plant, its weights and its controller.
 
-use crate::case::{Case, ControlActuator, ControllerChoice, EffortChoice, HandedTError};
 use crate::control::drives::Drives;
 use crate::control::study::ControlStudy;
 use crate::error::StudyError;
@@ -12,6 +11,7 @@ use hhc_control::{
     Acceptance, AdaptiveSettings, ControlRun, Controller, FeedbackController, FeedbackLaw,
     FeedbackSettings, Plant, RunError, StopReason, TMatrix,
 };
+use rotor_case::{Case, ControlActuator, ControllerChoice, EffortChoice, HandedTError};
 use std::sync::Arc;
 
 /// One set of harmonics under control: the rotor, its drives and how far they reach.

@@ -1,9 +1,9 @@
 //! What a control run leaves behind.
 
-use crate::case::ControlActuator;
 use crate::plant::{PlantState, PowerOutputs};
 use hhc_control::{ControlRun, StopReason, TMatrix, reduction_percent};
 use rotor_base::HarmonicSeries;
+use rotor_case::ControlActuator;
 
 /// What the controller did with one set of harmonics and one actuator.
 #[derive(Debug, Clone)]

@@ -7,7 +7,6 @@
 //! `u` are the voltages, and every actuator is its harmonic gain `g_p` at full scale. `m_n` is the load of the blade at n per
 //! rev, so that `S` is twice its mean square about the mean. Rotor and blade are linearised about the trim.
 
-use crate::case::{Case, ControlActuator};
 use crate::control::{ControlSet, Drives};
 use crate::error::StudyError;
 use crate::flaps::PlantError;
@@ -20,6 +19,7 @@ use hhc_control::{
 use rayon::prelude::*;
 use rotor_base::series::{added, coefficients, scaled};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_case::{Case, ControlActuator};
 use serde::{Deserialize, Serialize};
 
 /// What `J` is traded against.

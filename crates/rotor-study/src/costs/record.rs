@@ -1,7 +1,6 @@
 //! What every controlled set costs: what is stored of it, and its figures.
 
-use crate::blade::{LoadLine, StationLine, station_lines};
-use crate::case::{Case, ControlActuator};
+use crate::blade::{LoadLine, MeanLoads, StationLine, station_lines};
 use crate::control::{ControlStudy, Drives};
 use crate::costs::flap::{FlapCost, PiezoData};
 use crate::error::StudyError;
@@ -13,6 +12,7 @@ use hhc_control::RunError;
 use preisach_dyn::{ActuatorModel, PeriodicSettings};
 use rayon::prelude::*;
 use rotor_base::{Harmonic, HarmonicSeries};
+use rotor_case::{Case, ControlActuator};
 use rotor_response::{HingeMoment, ResponseError, StationLoads};
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,9 @@ pub struct CostRecords {
     pub deg_per_um: Option<f64>,
     /// Loads at the root of the blade without control.
     pub at_rest: StationLine,
+    /// Mean loads on the hub without control, rotor units as of [`MeanLoads::hub`]; none of a result of an earlier version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hub_at_rest: Option<[f64; 6]>,
     /// One entry per set of harmonics and actuator.
     pub controls: Vec<CostRecord>,
 }
@@ -33,6 +36,9 @@ pub struct CostRecords {
 pub struct CostRecord {
     /// Loads at the root of the blade with control.
     pub root: StationLine,
+    /// Mean loads on the hub with control, pilot controls held, rotor units; none of a result of an earlier version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hub: Option<[f64; 6]>,
     /// Output of the law of every actuator alone, cycled so slowly that it does not lag: `[cosine, sine]` at 1, 2, 3 ... per
     /// rev, deg; empty of an actuator without a loop.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -55,6 +61,10 @@ pub struct ControlCost {
     pub flaps: Vec<FlapCost>,
     /// Flap, lag and torsional moment at the root of the blade; torsion is what the pitch link holds.
     pub root: Vec<BladeCost>,
+    /// Mean loads on the hub and power of the shaft without control and with it, pilot controls held: what differs between
+    /// them a pilot would trim away. None of a result of an earlier version.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean_loads: Option<[MeanLoads; 2]>,
 }
 
 /// A load of the blade with and without control.
@@ -107,14 +117,15 @@ pub fn control_costs(
         return Ok(CostRecords::default());
     }
     let root = [case.rotor.root_offset_r];
-    let line = |found: Result<Vec<StationLoads>, ResponseError>| {
-        let loads = found.map_err(|source| StudyError::Response {
-            field: "control.harmonics".to_owned(),
-            source,
-        })?;
-        let mut lines = station_lines(&loads, rotor.scales());
-        Ok(lines.pop().unwrap_or_default())
-    };
+    let line =
+        |found: Result<Vec<StationLoads>, ResponseError>| -> Result<StationLine, StudyError> {
+            let loads = found.map_err(|source| StudyError::Response {
+                field: "control.harmonics".to_owned(),
+                source,
+            })?;
+            let mut lines = station_lines(&loads, rotor.scales());
+            Ok(lines.pop().unwrap_or_default())
+        };
     let model = match &drives.hysteretic {
         Some(FlapDrive::Model { model, rev_hz, .. }) => Some((model.as_ref(), *rev_hz)),
         _ => None,
@@ -135,11 +146,12 @@ pub fn control_costs(
             }
             _ => Vec::new(),
         };
-        Ok(CostRecord { root: line(loads)?, law_deg })
+        Ok(CostRecord { root: line(loads)?, hub: Some(study.state.rotor.hub.mean()), law_deg })
     };
     Ok(CostRecords {
         deg_per_um: model.map(|(model, _)| model.calibration.deg_per_um),
         at_rest: line(rotor.station_loads(&root))?,
+        hub_at_rest: Some(rotor.trim().rotor.hub.mean()),
         controls: studies.par_iter().map(of).collect::<Result<_, StudyError>>()?,
     })
 }
@@ -245,6 +257,10 @@ impl CostRecords {
                 * flaps.iter().map(|flap| flap.given_watt).sum::<f64>(),
             flaps,
             root,
+            mean_loads: self
+                .hub_at_rest
+                .zip(record.hub)
+                .map(|(rest, own)| [rest, own].map(|hub| MeanLoads::new(hub, setting))),
         })
     }
 }

@@ -1,10 +1,11 @@
 //! The coupled loop against closed forms.
 
 use super::*;
-use crate::flaps::{Bias, FlapDrive};
+use crate::flaps::FlapDrive;
 use approx::assert_abs_diff_eq;
 use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
 use rotor_base::series::scaled;
+use rotor_case::Bias;
 use std::sync::Arc;
 
 /// A linear actuator of 0.1 deg/V whose linkage gives way by `compliance_um_per_newton`.

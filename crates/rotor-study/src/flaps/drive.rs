@@ -1,6 +1,5 @@
 //! From voltage harmonics to flap motion: the ideal actuator and the identified one.
 
-use crate::flaps::bias::Bias;
 use crate::flaps::error::PlantError;
 use crate::flaps::full_scale::FullScale;
 use crate::flaps::motion::FlapMotion;
@@ -12,6 +11,7 @@ use preisach_dyn::{
 use rayon::prelude::*;
 use rotor_base::series::{only, place, scaled, times};
 use rotor_base::{Harmonic, HarmonicSeries, uniform_azimuths_rad};
+use rotor_case::Bias;
 use std::sync::Arc;
 
 /// Largest mean flap angle the bias solution leaves, deg.

@@ -1,6 +1,5 @@
 //! Driven flaps: from a voltage to the motion of a flap, and what the hinge moment makes of it.
 
-mod bias;
 mod coupling;
 mod drive;
 mod error;
@@ -8,7 +7,6 @@ mod full_scale;
 mod hinge_power;
 mod motion;
 
-pub use bias::Bias;
 pub use coupling::{COUPLING_TOLERANCE_DEG, CouplingResidual, HingeCoupling};
 pub use drive::{FlapDrive, MEAN_FLAP_TOLERANCE_DEG};
 pub use error::PlantError;

@@ -1,8 +1,8 @@
 //! A trim led to its flight from an easier one.
 
-use crate::case::{Case, InflowChoice};
 use crate::error::StudyError;
 use crate::rotor::trimmed::TrimmedRotor;
+use rotor_case::{Case, InflowChoice};
 use trim::TrimSolution;
 
 /// Halvings of a step in advance ratio that cannot be taken at once.

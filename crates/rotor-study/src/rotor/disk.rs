@@ -75,8 +75,8 @@ impl TrimmedRotor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::{Case, CompressibilityChoice, FreeWakeValues, InflowChoice, ModeNumbers};
     use flap_aero::AttachedFlowModel;
+    use rotor_case::{Case, CompressibilityChoice, FreeWakeValues, InflowChoice, ModeNumbers};
 
     fn quick() -> Case {
         let mut case = Case { advance_ratio: 0.2, ..Case::default() };

@@ -1,7 +1,7 @@
 //! The inflow of a case: a linear model, or a free wake settled with the trim.
 
-use crate::case::{Case, CirculationChoice};
 use crate::error::StudyError;
+use rotor_case::{Case, CirculationChoice};
 use rotor_response::{ResponseError, ResponseTolerances, RotorSolver};
 use rotor_wake::{
     ClosestPassage, FlightState, InflowModel, WAKE_BREAKDOWN_TRANSPORT, descent_transport,

@@ -1,10 +1,10 @@
 //! T with the geometry of the free wake converged anew: linearised, and by central differences as a check.
 
-use crate::case::Case;
 use crate::rotor::authority::FlapAuthority;
 use rayon::prelude::*;
 use rotor_base::HarmonicSeries;
 use rotor_base::series::{only, place};
+use rotor_case::Case;
 use rotor_response::{Condition, FlapDirection, ResponseError, RotorSolver};
 use std::collections::BTreeSet;
 use trim::{WakeDifference, WakeTrim, WakeTrimSettings, linearised_in_wake, wake_difference};

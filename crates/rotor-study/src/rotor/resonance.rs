@@ -1,7 +1,7 @@
 //! Undamped modes at a harmonic of the rotor speed: looked for before a rotor is trimmed.
 
-use crate::case::{Case, DissimilarBlade};
 use crate::error::StudyError;
+use rotor_case::{Case, DissimilarBlade};
 use rotor_response::{ResponseError, Rotor};
 use trim::TrimError;
 

@@ -1,6 +1,5 @@
 //! A rotor in trim with its flaps at rest.
 
-use crate::case::{Case, TInflowChoice};
 use crate::error::StudyError;
 use crate::rotor::authority::{FlapAuthority, HARMONICS};
 use crate::rotor::inflow::{SettledTrim, refuse_prescribed_circulation, settled_trim};
@@ -10,6 +9,7 @@ use nalgebra::DMatrix;
 use rotor_base::once::{Once, found};
 use rotor_base::series::scaled;
 use rotor_base::{HarmonicSeries, RotorScales};
+use rotor_case::{Case, TInflowChoice};
 use rotor_response::{
     BladeStateSpace, Condition, FlapDirection, InflowState, OtherBlade, ResponseError,
     ResponseTolerances, Rotor, RotorSolution, RotorSolver, SectionLift, SixLoads, Stability,

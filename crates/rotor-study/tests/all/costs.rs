@@ -1,7 +1,7 @@
 //! What control costs: the fronts of the paper's rotor against what shares no code with them.
 
 use rotor_base::{Harmonic, HarmonicSeries};
-use rotor_study::case::{Case, ControlActuator, EffortChoice};
+use rotor_case::{Case, ControlActuator, EffortChoice};
 use rotor_study::{
     CostedSet, Drives, FrontAgainst, HubLoads, RotorPlant, Setting, TrimmedRotor, control_costs,
     control_set, fronts,

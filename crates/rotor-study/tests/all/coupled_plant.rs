@@ -5,8 +5,8 @@ use approx::{assert_abs_diff_eq, assert_relative_eq};
 use flap_aero::{AttachedFlowModel, FlapChord, Mach};
 use hhc_control::Plant;
 use preisach_dyn::{ActuatorModel, LinkageStage, LoadStiffness, VoltageRange};
-use rotor_study::case::{Case, CompressibilityChoice, InflowChoice, PrescribedTrim, TrimValues};
-use rotor_study::{Bias, COUPLING_TOLERANCE_DEG, FlapDrive, FullScale, RotorPlant, TrimmedRotor};
+use rotor_case::{Bias, Case, CompressibilityChoice, InflowChoice, PrescribedTrim, TrimValues};
+use rotor_study::{COUPLING_TOLERANCE_DEG, FlapDrive, FullScale, RotorPlant, TrimmedRotor};
 use std::sync::Arc;
 
 /// A linear actuator of 0.1 deg/V whose linkage gives way by `compliance_um_per_newton`.

@@ -1,7 +1,7 @@
 //! A T that is handed in, in the loops of a study.
 
 use hhc_control::Plant;
-use rotor_study::case::{Case, ControlActuator, ControllerChoice, HandedSet, HandedT};
+use rotor_case::{Case, ControlActuator, ControllerChoice, HandedSet, HandedT};
 use rotor_study::{Drives, RotorPlant, StudyError, TrimmedRotor, control_set};
 use std::sync::Arc;
 

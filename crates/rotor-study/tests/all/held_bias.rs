@@ -5,9 +5,9 @@ use preisach_dyn::{
     ActuatorLaw, ActuatorModel, Envelope, LinkageStage, LoadStiffness, PrandtlIshlinskii,
     PrandtlParameters, VoltageRange, WeightedPlay,
 };
-use rotor_study::case::{BiasChoice, Case, ControlActuator};
-use rotor_study::{Bias, FlapDrive, FullScale, RotorPlant, TrimmedRotor};
+use rotor_case::{Bias, BiasChoice, Case, ControlActuator};
 use rotor_study::{Drives, control_set};
+use rotor_study::{FlapDrive, FullScale, RotorPlant, TrimmedRotor};
 use std::sync::Arc;
 
 /// Plays behind a bent curve, on a linkage that gives way by a compliance.

@@ -2,8 +2,8 @@
 
 use hhc_control::Plant;
 use nalgebra::{DMatrix, DVector};
+use rotor_case::{Case, ControlActuator, EffortChoice};
 use rotor_response::InflowState;
-use rotor_study::case::{Case, ControlActuator, EffortChoice};
 use rotor_study::{Drives, RotorPlant, TrimmedRotor, control_set};
 
 fn ideal_case(weight_per_watt: f64) -> Case {

@@ -3,7 +3,7 @@
 use hhc_control::{Plant, identify_t};
 use nalgebra::{DMatrix, DVector};
 use rotor_base::{HarmonicSeries, uniform_azimuths_rad};
-use rotor_study::case::{Case, RootPitchBy};
+use rotor_case::{Case, RootPitchBy};
 use rotor_study::{Drives, RootPitchPlant, TrimmedRotor, compare_root_pitch};
 
 /// The paper's rotor in Drees's inflow.

@@ -5,7 +5,7 @@ use super::{ActuatorChoice, PAPER_CASE, shipped_case};
 use crate::files::ron_text;
 use crate::output::wrap;
 use crate::problem::Problems;
-use rotor_study::case::{
+use rotor_case::{
     ActuatorPath, ActuatorValues, AerodynamicsValues, AirfoilStation, BenchFolder, BladeTables,
     Case, ControlValues, DissimilarBlade, EffectivenessValues, FailedFlap, Field, FlapActuator,
     FlapValues, FlightValues, FreeWakeValues, HorizontalTailValues, InflowValues, LoadWeights,

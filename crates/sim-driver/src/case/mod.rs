@@ -2,7 +2,7 @@
 //!
 //! | idea | module |
 //! |---|---|
-//! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_study::case`] |
+//! | sections, ranges, models and warnings of a case, faults by field path; no file | [`rotor_case`] |
 //! | tables of the fields for the book, and the case of `hhc init` | `describe` |
 //! | the unit of a field by its path | `units` |
 //! | RON text, lines of fields, old names, tables, measured files and actuators that a case names | `read`, `airfoils`, `measured`, `t_file` |
@@ -26,5 +26,5 @@ pub use read::{
     ActuatorSource, CONTROLLERS_CASE, LoadedCase, PAPER_CASE, load_case, read_case, shipped_case,
     with_actuator_file,
 };
-pub use rotor_study::case::*;
+pub use rotor_case::*;
 pub use units::unit_of;

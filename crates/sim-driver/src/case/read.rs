@@ -163,7 +163,7 @@ fn resolved(mut case: Case, index: RonIndex, folder: &Folder) -> Result<LoadedCa
     match loaded.case.blade_with_flaps() {
         Ok(_) => Ok(loaded),
         Err(error) => {
-            let fault = Fault::Refused { message: SimError::from(error).to_string() };
+            let fault = Fault::Refused { message: error.to_string() };
             Err(Problem::new(loaded.index.place("rotor"), fault).into())
         }
     }

@@ -3,9 +3,9 @@
 use super::Case;
 use crate::files::{Folder, RonIndex, Source, missing_file};
 use crate::problem::{Fault, Place, Problem};
+use rotor_case::HandedT;
 use rotor_export::{Axis, Document, LabelledArray};
 use rotor_flight::handed_t;
-use rotor_study::case::HandedT;
 use serde::Deserialize;
 use serde_json::Value;
 use std::fmt::Display;

@@ -1,6 +1,6 @@
 //! The unit of a field of a case by its path.
 
-use rotor_study::case::{Case, Field, Section, Value, Visitor};
+use rotor_case::{Case, Field, Section, Value, Visitor};
 
 /// The unit of the field at a path such as `rotor.gj` or `flaps[0].start_r`, empty for a pure number, a word or a group; none
 /// where the case has no such field.

@@ -12,7 +12,7 @@ use crate::sweep::{continued_trim, refuse_diverged};
 use case_sweep::{Cell, Found, NoNumbers, ReadCase, Runner};
 use measured_data::DataError;
 use rotor_base::RotorScales;
-use rotor_study::case::Case;
+use rotor_case::Case;
 use rotor_study::{CurveComparison, HubLoads, TrimmedRotor, WakeStatus};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -276,7 +276,7 @@ fn columns(figures: &Figures, scales: &RotorScales) -> Vec<(String, Cell)> {
 mod tests {
     use super::*;
     use crate::case::{ActuatorChoice, BenchFolder, PAPER_CASE, shipped_case};
-    use rotor_study::case::{ControlActuator, ControllerChoice, EffortChoice};
+    use rotor_case::{ControlActuator, ControllerChoice, EffortChoice};
     use rotor_study::{
         LISTED_HARMONICS, MeasuredCurve, MeasuredData, Quantity, compare_curves, series_of,
     };

@@ -14,6 +14,7 @@ use actuator_export::{
 use bench_study::stored::read_actuator;
 use clap::ValueEnum;
 use preisach_dyn::ActuatorModel;
+use rotor_case::AttachedFlowModel;
 use rotor_export::{DataFormat, controller_files, data_files};
 use rotor_flight::{controllers_of_case, exported_case, state_space_of_case};
 use std::fmt::Display;
@@ -176,9 +177,23 @@ fn case(args: &ExportArgs, loaded: &LoadedCase) -> Result<Written, SimError> {
     };
     let (document, warnings) = match args.what.unwrap_or_default() {
         ExportMatrices::T => leaving(loaded, exported_case)?,
-        ExportMatrices::StateSpace => leaving(loaded, |case, _| state_space_of_case(case))?,
+        ExportMatrices::StateSpace => {
+            let (document, mut warnings) = leaving(loaded, |case, _| state_space_of_case(case))?;
+            warnings.extend(settled_lags(loaded));
+            (document, warnings)
+        }
     };
     Ok((data_files(&document, name, format), warnings))
+}
+
+/// What is said of a state space whose sections have lags in the case.
+fn settled_lags(loaded: &LoadedCase) -> Option<String> {
+    let message = "the lag states of the sections are settled in the state space, which is quasi-steady: the lift of a flap comes at once and whole. What the lags do to the answer to the flaps is in T: hhc export CASE.ron --to json";
+    let has_lags = loaded.case.aerodynamics.model != AttachedFlowModel::QuasiSteady;
+    has_lags.then(|| {
+        let place = loaded.index.place("aerodynamics.model");
+        Problem::new(place, Fault::Other(message.to_owned())).to_string()
+    })
 }
 
 fn controllers(args: &ExportArgs, loaded: &LoadedCase, name: &str) -> Result<Written, SimError> {

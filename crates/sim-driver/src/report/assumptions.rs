@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::choices::spelt;
 use report_page::Section;
-use rotor_study::case::{Field, Section as CaseSection, Value as FieldValue, Visitor};
+use rotor_case::{Field, Section as CaseSection, Value as FieldValue, Visitor};
 use serde_json::Value;
 
 /// Endings of the names of fields that say the unit.

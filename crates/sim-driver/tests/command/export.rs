@@ -150,7 +150,7 @@ fn the_rotor_leaves_as_state_space() {
     let place = Place::new();
     place.write("case.ron", QUICK_CASE);
     let args = ["export", "case.ron", "--to", "json", "--what", "state-space", "-o", "s"];
-    place.hhc(&args).done();
+    assert_eq!(place.hhc(&args).err, "");
     let json: serde_json::Value = serde_json::from_str(&place.read("s/rotor.json")).unwrap();
     let a = array(&json, "A");
     assert_eq!(a["axes"][0]["labels"][4], "flap1_rate");
@@ -159,6 +159,13 @@ fn the_rotor_leaves_as_state_space() {
     let together = array(&json, "A_multiblade");
     assert_eq!(together["values"].as_array().unwrap().len(), 4 * 8);
     assert_eq!(array(&json, "B_multiblade")["axes"][1]["labels"][6], "cos1_flap1_angle");
+    // lags of the sections are not among its states: that is said
+    let lagging = "model: HariharanLeishman, compressibility: LocalMach";
+    let lagging = QUICK_CASE.replace("model: QuasiSteady, compressibility: None", lagging);
+    place.write("lags.ron", &lagging);
+    let args = ["export", "lags.ron", "--to", "json", "--what", "state-space", "-o", "l"];
+    let said = place.hhc(&args).err;
+    assert!(said.contains("lags.ron:5:") && said.contains("quasi-steady"), "{said}");
 }
 
 #[test]

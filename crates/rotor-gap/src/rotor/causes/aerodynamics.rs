@@ -2,7 +2,7 @@
 
 use super::{Occasion, RotorCause};
 use model_gap::points::{CauseParameter, Shown};
-use rotor_study::case::{CompressibilityChoice, DynamicStallChoice, FreeWakeValues, InflowChoice};
+use rotor_case::{CompressibilityChoice, DynamicStallChoice, FreeWakeValues, InflowChoice};
 
 /// A cause that is there or not; between, a part of it.
 fn share() -> CauseParameter {

@@ -4,7 +4,7 @@ use super::{Occasion, RotorCause};
 use crate::properties;
 use crate::rotor::model::RotorModel;
 use model_gap::points::{CauseParameter, Shown};
-use rotor_study::case::{CouplingsChoice, DissimilarBlade};
+use rotor_case::{CouplingsChoice, DissimilarBlade};
 
 const SWEEP_OF_SPEED: &[&str] = &["points at other rotor speeds", "blade frequencies at rest"];
 

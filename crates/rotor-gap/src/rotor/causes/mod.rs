@@ -96,7 +96,7 @@ pub(crate) fn library(o: &Occasion<'_>) -> Vec<RotorCause> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rotor_study::case::Case;
+    use rotor_case::Case;
 
     #[test]
     fn every_cause_is_in_the_list_and_changes_the_model() {

@@ -12,13 +12,13 @@ use measured_data::{DatasetKind, SweepData};
 use model_gap::points::{PointFinding, PointTable};
 use preisach_dyn::ActuatorModel;
 use preisach_dyn::identify::Settings;
+use rotor_case::{ActuatorChoice, BenchFolder, Case, ControlValues, UncertainField};
 use rotor_gap::blade::{Frequencies, diagnose_blade, usual_blade_uncertain};
 use rotor_gap::section::{SectionLoads, diagnose_section};
 use rotor_gap::{
     CaseQuestion, RotorGapError, RotorQuestion, Sweep, SweepPoint, WonBack, diagnose, stated,
     usual_uncertain,
 };
-use rotor_study::case::{ActuatorChoice, BenchFolder, Case, ControlValues, UncertainField};
 use std::sync::Arc;
 
 /// Name of the case that a diagnosis extended.

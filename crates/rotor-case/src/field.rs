@@ -124,22 +124,22 @@ macro_rules! section {
             }
         }
 
-        impl $crate::case::field::Value for $name {
-            fn inside<V: $crate::case::field::Visitor>(&self, visitor: &mut V) -> bool {
+        impl $crate::field::Value for $name {
+            fn inside<V: $crate::field::Visitor>(&self, visitor: &mut V) -> bool {
                 visitor.section("", self);
                 true
             }
         }
 
-        impl $crate::case::field::Section for $name {
+        impl $crate::field::Section for $name {
             const ABOUT: &'static [&'static str] = &[$($about),+];
 
-            fn each<V: $crate::case::field::Visitor>(&self, visitor: &mut V) {
+            fn each<V: $crate::field::Visitor>(&self, visitor: &mut V) {
                 #[allow(unused_imports, reason = "ranges of some sections only")]
-                use $crate::case::field::Range::{Any, Count, Rule, UpTo, Within};
+                use $crate::field::Range::{Any, Count, Rule, UpTo, Within};
                 $(visitor.field(
-                    &$crate::case::field::Field {
-                        key: $crate::case::field::section!(@key $field $($key)?),
+                    &$crate::field::Field {
+                        key: $crate::field::section!(@key $field $($key)?),
                         meaning: &[$($meaning),+],
                         range: $range,
                         unit: $unit,
@@ -158,8 +158,8 @@ pub(crate) use section;
 /// Values without a range of their own. Of a choice, the variants in braces hold a section to walk over.
 macro_rules! values {
     ($($name:ty $({ $($variant:ident),+ })?),+ $(,)?) => {
-        $(impl $crate::case::field::Value for $name {
-            $(fn inside<V: $crate::case::field::Visitor>(&self, visitor: &mut V) -> bool {
+        $(impl $crate::field::Value for $name {
+            $(fn inside<V: $crate::field::Visitor>(&self, visitor: &mut V) -> bool {
                 $(if let Self::$variant(section) = self {
                     visitor.section(stringify!($variant), section);
                     return true;

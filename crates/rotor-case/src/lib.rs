@@ -1,7 +1,7 @@
 //! The values of a case: sections and their ranges, the models built from them, and warnings of values that
 //! can be but hardly are meant.
 //!
-//! Nothing here knows a file. A field is named by its path (`flaps[1].start_r`); who has read the case from a
+//! Floor 4. Nothing here knows a file. A field is named by its path (`flaps[1].start_r`); who has read the case from a
 //! text adds the line. One struct per section holds what a user writes, in degrees and engineering units; the
 //! models below are built from it in one step, in radians and rotor units, by `models`.
 //!
@@ -9,14 +9,15 @@
 //! |---|---|
 //! | a field stated once: name, default, range, unit, remedy, meaning | `field` |
 //! | sections of a case | `sections`, `blade`, `wake`, `control`, `flight`, `measured` |
-//! | rules between fields, and [`Case::check`] | `rules`, `rules_blade` |
+//! | rules between fields, and [`Case::check`] | `rules` |
 //! | what is wrong with a value, and where | `fault` |
-//! | values into the models of the crates below | `models` |
+//! | values into the models of the crates below | `models`; [`ModelError`] |
 //! | values that can be, but hardly are meant | `plausibility` |
 
+mod bias;
 mod blade;
-mod checker;
 mod control;
+mod error;
 mod fault;
 mod field;
 mod flight;
@@ -25,10 +26,10 @@ mod measured;
 mod models;
 mod plausibility;
 mod rules;
-mod rules_blade;
 mod sections;
 mod wake;
 
+pub use bias::Bias;
 pub use blade::{
     BladeTables, DissimilarBlade, EffectivenessValues, FlapValues, GravityChoice, PitchHarmonic,
     RootPitchBy, RotorValues, times,
@@ -39,6 +40,7 @@ pub use control::{
     LoadWeights, PrescribedTrim, PropulsiveTrim, StrokeChoice, TInflowChoice, TrimValues,
     WindTunnelTrim,
 };
+pub use error::ModelError;
 pub use fault::{CaseFault, CaseFaults, FieldFault};
 pub use field::{Field, Range, Section, Value, Visitor, variant_names};
 pub use flight::{
@@ -63,3 +65,8 @@ pub use rotor_response::{FlapMass, ReverseFlow};
 pub use rotor_wake::{
     ControlPoint, CoreModel, FarField, NearWakeMotion, ReleasePoint, WakeMethod, WakeSymmetry,
 };
+
+/// The example of the crate's README, run as a documentation test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+pub struct ReadmeExample;

@@ -6,7 +6,7 @@ use super::{
     Case, CirculationChoice, CouplingsChoice, InflowChoice, Joint, NearWakeMotion, PropulsiveTrim,
     RotorValues, TrimValues, WakeChoices,
 };
-use crate::error::StudyError;
+use crate::ModelError;
 use rotor_response::{CoupledBladeMode, Rotor, RotorSolution, SectionLift};
 use trim::mean_lift_coefficient;
 
@@ -53,8 +53,8 @@ impl Case {
     /// collective of a prescribed trim, else at none.
     ///
     /// # Errors
-    /// [`StudyError::Blade`] and [`StudyError::Response`] if the rotor cannot be built.
-    pub fn plausibility_warnings(&self) -> Result<Vec<PlausibilityWarning>, StudyError> {
+    /// [`ModelError::Blade`] and [`ModelError::Response`] if the rotor cannot be built.
+    pub fn plausibility_warnings(&self) -> Result<Vec<PlausibilityWarning>, ModelError> {
         let mut warnings = self.value_warnings();
         warnings.extend(self.trim.ct_sigma().and_then(|ct_sigma| self.lift_warning(ct_sigma)));
         let pitch_rad = self.trim.collective_rad();
@@ -67,14 +67,14 @@ impl Case {
     /// Warnings of what the trim of the case has found.
     ///
     /// # Errors
-    /// [`StudyError::Response`] if the coupled modes cannot be found.
+    /// [`ModelError::Response`] if the coupled modes cannot be found.
     pub fn warnings_in_flight(
         &self,
         rotor: &Rotor,
         theta0_rad: f64,
         found: &RotorSolution,
         most: Option<SectionLift>,
-    ) -> Result<Vec<PlausibilityWarning>, StudyError> {
+    ) -> Result<Vec<PlausibilityWarning>, ModelError> {
         let mut warnings = self.value_warnings();
         let ct_sigma = found.thrust_coefficient / rotor.model().solidity();
         let lift = self.lift_warning(ct_sigma).map_or_else(|| self.section_warning(most), Some);
@@ -252,11 +252,11 @@ impl Case {
         rotor: &Rotor,
         theta0_rad: f64,
         flight: Option<&RotorSolution>,
-    ) -> Result<Option<PlausibilityWarning>, StudyError> {
+    ) -> Result<Option<PlausibilityWarning>, ModelError> {
         let field = "rotor.modal_damping";
         let found = rotor.lightly_damped_at_a_harmonic(theta0_rad, flight);
         let found =
-            found.map_err(|source| StudyError::Response { field: field.to_owned(), source })?;
+            found.map_err(|source| ModelError::Response { field: field.to_owned(), source })?;
         Ok(found.map(|CoupledBladeMode { kind, number, frequency_per_rev }| {
             let where_found = match (flight, &self.trim) {
                 (Some(_), _) => "about the mean deflection in flight, pitch",

@@ -1,7 +1,7 @@
 //! Warnings of the structure of the blade: stiffness, mass, size, and what its air does to it in torsion.
 
 use super::{PlausibilityWarning, warning};
-use crate::case::{Case, Joint};
+use crate::{Case, Joint};
 
 /// Bending and torsion stiffness below which a blade is a rope, over `m0 Omega^2 R^4`: a hundredth of the
 /// softest articulated blades.
@@ -32,7 +32,7 @@ impl Case {
     /// ```text
     /// p^2 = k / int m (k_m1^2 + k_m2^2) + (k_m2^2 - k_m1^2) / (k_m1^2 + k_m2^2)      uniform blade
     /// ```
-    pub(crate) fn soft_pitch(&self) -> Option<(f64, f64)> {
+    pub fn soft_pitch(&self) -> Option<(f64, f64)> {
         let r = &self.rotor;
         let Joint::Spring { stiffness } = r.root.feather else { return None };
         let [thin, wide] = [r.km1_r, r.km2_r].map(|k| k * k);

@@ -1,13 +1,16 @@
 //! Rules between the fields of a case, and of values that a plain range cannot say.
 
-use super::checker::Checker;
-use super::rules_blade::check_blade;
-use super::{
+mod blade;
+mod checker;
+
+use crate::{
     ActuatorChoice, AirfoilStation, AttachedFlowModel, BiasChoice, Case, CaseFault, CaseFaults,
     CompressibilityChoice, ControlActuator, ControlValues, ControllerChoice, EffortChoice,
     FlapActuator, FlightValues, FreeWakeValues, InflowChoice, StrokeChoice, TInflowChoice,
     WakeMethod, WakeSymmetry,
 };
+use blade::check_blade;
+use checker::Checker;
 
 // rules between fields
 const INCOMPRESSIBLE: &str = "Incompressible holds at Mach 0 only; set aerodynamics.compressibility: None, or choose Calibrated or HariharanLeishman";

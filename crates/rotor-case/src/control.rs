@@ -2,7 +2,7 @@
 
 use super::HandedT;
 use super::field::{Value, is_default, section, values, variant_names};
-use crate::flaps::Bias;
+use crate::Bias;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

@@ -4,7 +4,7 @@ use super::{
     Case, CompressibilityChoice, CouplingsChoice, DissimilarBlade, EffectivenessValues, FlapValues,
     FreeWakeValues, GravityChoice, PitchHarmonic, PropulsiveTrim, RolledUpChoice, TrimValues,
 };
-use crate::error::StudyError;
+use crate::ModelError;
 use flap_aero::{AttachedFlowModel, FlapEffectiveness};
 use rotor_base::{Harmonic, HarmonicSeries};
 use rotor_fem::{BladeProperties, BladeSpec, Distribution, ModeCount, TorsionTerms, Twist};
@@ -35,8 +35,8 @@ impl Case {
     /// The blade's structure at zero pitch.
     ///
     /// # Errors
-    /// [`StudyError::Blade`]; a checked case gives none.
-    pub fn blade_properties(&self) -> Result<BladeProperties, StudyError> {
+    /// [`ModelError::Blade`]; a checked case gives none.
+    pub fn blade_properties(&self) -> Result<BladeProperties, ModelError> {
         self.blade(&DissimilarBlade::default(), "rotor")
     }
 
@@ -44,12 +44,12 @@ impl Case {
     ///
     /// # Errors
     /// As [`Self::blade_properties`].
-    pub fn dissimilar_blade(&self, own: &DissimilarBlade) -> Result<BladeProperties, StudyError> {
+    pub fn dissimilar_blade(&self, own: &DissimilarBlade) -> Result<BladeProperties, ModelError> {
         self.blade(own, "rotor.dissimilar_blades")
     }
 
     /// The structure with the factors of a blade; `field` is at fault where there is none.
-    fn blade(&self, own: &DissimilarBlade, field: &str) -> Result<BladeProperties, StudyError> {
+    fn blade(&self, own: &DissimilarBlade, field: &str) -> Result<BladeProperties, ModelError> {
         let (b, t) = (&self.rotor, &self.rotor.tables);
         let twist_rad: Vec<_> = t.twist_deg.iter().map(|(x, deg)| (*x, deg.to_radians())).collect();
         let spec = BladeSpec {
@@ -71,7 +71,7 @@ impl Case {
             rotor_speed: 1.0,
         };
         BladeProperties::new(spec)
-            .map_err(|source| StudyError::Blade { field: field.to_owned(), source })
+            .map_err(|source| ModelError::Blade { field: field.to_owned(), source })
     }
 
     /// Higher harmonics of pitch at the root of every blade, rad.
@@ -88,30 +88,26 @@ impl Case {
 
     /// Terms of torsion that the equations of moderate deflection keep: in flight with the couplings `Moderate`, in
     /// modes about the deflected blade always.
-    pub(crate) fn torsion_terms(&self) -> TorsionTerms {
+    pub fn torsion_terms(&self) -> TorsionTerms {
         TorsionTerms { untwist: self.structure.untwist, angle: self.structure.twist_angle }
     }
 
     /// The same with the mass of flaps that it does not contain.
     ///
     /// # Errors
-    /// As [`Self::blade_properties`]; [`StudyError::Response`], which a checked case does not give.
-    pub fn blade_with_flaps(&self) -> Result<BladeProperties, StudyError> {
+    /// As [`Self::blade_properties`]; [`ModelError::Response`], which a checked case does not give.
+    pub fn blade_with_flaps(&self) -> Result<BladeProperties, ModelError> {
         with_flap_masses(&self.blade_properties()?, &self.rotor_model().flaps)
-            .map_err(|source| StudyError::Response { field: "flaps".to_owned(), source })
+            .map_err(|source| ModelError::Response { field: "flaps".to_owned(), source })
     }
 
     /// The rotor with blades of a structure; `field` is at fault where it cannot be built.
     ///
     /// # Errors
-    /// [`StudyError::Response`].
-    pub(crate) fn rotor_of(
-        &self,
-        blade: &BladeProperties,
-        field: &str,
-    ) -> Result<Rotor, StudyError> {
+    /// [`ModelError::Response`].
+    pub fn rotor_of(&self, blade: &BladeProperties, field: &str) -> Result<Rotor, ModelError> {
         Rotor::new(self.rotor_model(), blade, self.discretisation())
-            .map_err(|source| StudyError::Response { field: field.to_owned(), source })
+            .map_err(|source| ModelError::Response { field: field.to_owned(), source })
     }
 
     /// Modes kept in the response.

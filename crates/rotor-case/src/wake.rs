@@ -242,7 +242,7 @@ const HOVER_FAR_TURNS: usize = 6;
 
 impl BodyValues {
     /// The body; none without length.
-    pub(crate) fn body(&self) -> Option<Body> {
+    pub fn body(&self) -> Option<Body> {
         (self.length_r > 0.0).then(|| Body {
             half_length: 0.5 * self.length_r,
             radius: 0.5 * self.diameter_r,

@@ -283,7 +283,7 @@ pub enum InflowChoice {
 
 impl InflowChoice {
     /// The model; none of a free wake, which converges together with the trim.
-    pub(crate) fn model(&self) -> Option<Arc<dyn InflowModel>> {
+    pub fn model(&self) -> Option<Arc<dyn InflowModel>> {
         Some(match *self {
             Self::Uniform => Arc::new(LinearInflow::Uniform),
             Self::Drees => Arc::new(LinearInflow::Drees),

@@ -1,7 +1,7 @@
 //! Rules of the blade: root, offsets, tables along the span, blades that differ.
 
 use super::checker::Checker;
-use super::{Case, CouplingsChoice, DynamicStallChoice, Joint, RootPitchBy, TwistAngle, Untwist};
+use crate::{Case, CouplingsChoice, DynamicStallChoice, Joint, RootPitchBy, TwistAngle, Untwist};
 
 /// Softest springs of flap and lag hinges and of the pitch link, over `m0 Omega^2 R^3`.
 const LEAST_SPRING: f64 = 1e-6;
@@ -51,7 +51,7 @@ fn check_root_pitch(check: &mut Checker, case: &Case) {
 impl Case {
     /// Why a harmonic of root pitch cannot be made, where a swashplate makes it: it gives the blade number per rev and
     /// its neighbours.
-    pub(crate) fn beyond_swashplate(&self, harmonic: usize) -> Option<String> {
+    pub fn beyond_swashplate(&self, harmonic: usize) -> Option<String> {
         let blades = self.rotor.blades;
         let beyond = harmonic.abs_diff(blades) > 1;
         (self.rotor.root_pitch_by == RootPitchBy::Swashplate && beyond).then(|| {

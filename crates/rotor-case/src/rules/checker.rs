@@ -1,7 +1,7 @@
 //! Collects every value of a case that is out of range, with the path of its field.
 
-use super::field::{Field, Section, Value, Visitor};
-use super::{Case, CaseFault, CaseFaults, FieldFault};
+use crate::field::{Field, Section, Value, Visitor};
+use crate::{Case, CaseFault, CaseFaults, FieldFault};
 
 /// Walks over a case, checks values against their ranges, and collects what fails.
 pub(super) struct Checker {
