@@ -16,7 +16,7 @@ use preisach_dyn::{
 use std::f64::consts::TAU;
 
 /// Benches of each family, if the variable of this name does not say another number.
-const SEEDS: (&str, u64) = ("INTERVAL_SEEDS", 8);
+const SEEDS: (&str, u64) = ("INTERVAL_SEEDS", 5);
 /// Percent of the truths that 95 % intervals hold at least.
 const LEAST_HELD_PERCENT: u64 = 85;
 const LEVELS: usize = 8;

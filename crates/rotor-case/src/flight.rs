@@ -106,8 +106,8 @@ section! {
         pub rate_weight: f64 = 0.0, Within(0.0, 1e6), "1/V^2", "0 leaves it out";
         /// Chance that a flap acts, which the control counts on: below 100 % flaps lean less on each other.
         pub flap_survival_percent: f64 = 90.0, Within(1.0, 100.0), "%", "90 % is usual; 100 % counts on flaps that never fail";
-        /// Largest `J` that any one flap that stops may leave, over that without control: the control goes for less where
-        /// it would leave more.
+        /// Largest `J` that any one flap that stops may leave, over that without control: the control turns away from
+        /// its optimum where it would leave more.
         pub dead_flap_percent: f64 = 110.0, Within(100.0, 1e6), "%", "110 % keeps below 120 % with hysteresis and noise; 1e6 % leaves it out";
         /// Whether the adaptive controller is told `noise_percent`. `Untold`: it estimates the noise.
         pub noise_notice: Notice = Notice::Untold, Any, "", "";

@@ -155,44 +155,100 @@ static void solve_in_discs(double normal[CONTROLS][CONTROLS], const double linea
 
 /* ---- relaxed step ----------------------------------------------------------------------------- */
 
-/* The largest part of the target, up to 1, with which no flap that stops leaves J above DEAD_FLAP_COST
- * times that of zero control: a root of a parabola. */
-static double part_that_is_borne(const {{name}}_state *s, double t[LOADS][CONTROLS], const double z[LOADS])
+/* J without a flap at the control x + s d over s: a s^2 + 2 b s + c; without x about zero control. */
+static void without(const {{name}}_state *s, int dead, double t[LOADS][CONTROLS], const double z[LOADS],
+    const double *x, const double d[CONTROLS], double abc[3])
 {
-    double at_rest = 0.0, room, part = 1.0;
-    int i, k, dead;
+    int i, k;
+    abc[0] = abc[1] = abc[2] = 0.0;
     for (i = 0; i < LOADS; ++i) {
-        at_rest += (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]) * z[i] * z[i];
-    }
-    room = (DEAD_FLAP_COST - 1.0) * at_rest;
-    if (!isfinite(room)) {
-        return part;
-    }
-    for (dead = 0; dead < FLAPS; ++dead) {
-        double a = 0.0, b = 0.0, root;
-        for (i = 0; i < LOADS; ++i) {
-            const double weight = s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i];
-            double moved = 0.0;
-            for (k = 0; k < CONTROLS; ++k) {
-                moved += k / WIDTH == dead ? 0.0 : t[i][k] * s->target_volt[k];
+        const double weight = s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i];
+        double at = z[i], along = 0.0;
+        for (k = 0; k < CONTROLS; ++k) {
+            if (k / WIDTH != dead) {
+                at += x ? t[i][k] * x[k] : 0.0;
+                along += t[i][k] * d[k];
             }
-            a += weight * moved * moved;
-            b += weight * z[i] * moved;
         }
-        root = sqrt(b * b + a * room);
-        if (a > 0.0) {
-            part = fmin(part, b > 0.0 ? room / (b + root) : (root - b) / a);
+        abc[0] += weight * along * along;
+        abc[1] += weight * at * along;
+        abc[2] += weight * at * at;
+    }
+}
+
+/* The largest part of an aim, up to 1, with which J rises by no more than `room` whichever flap stops. */
+static double part_that_is_borne(const {{name}}_state *s, double t[LOADS][CONTROLS], const double z[LOADS],
+    const double aim[CONTROLS], double room)
+{
+    double part = 1.0, abc[3], root;
+    int dead;
+    for (dead = 0; dead < FLAPS; ++dead) {
+        without(s, dead, t, z, 0, aim, abc);
+        root = sqrt(abc[1] * abc[1] + abc[0] * room);
+        if (abc[0] > 0.0) {
+            part = fmin(part, abc[1] > 0.0 ? room / (abc[1] + root) : (root - abc[1]) / abc[0]);
         }
     }
     return part;
 }
 
+/* Where the step goes: to the optimum, or as near to it as no flap that stops leaves more than DEAD_FLAP_COST times
+ * J of zero control: toward the optimum of flaps that each count on themselves alone, then toward zero control. */
+static void bear_a_dead_flap({{name}}_state *s, double t[LOADS][CONTROLS], const double z[LOADS],
+    double normal[CONTROLS][CONTROLS], const double linear[CONTROLS], double aim[CONTROLS])
+{
+    double at_rest = 0.0, limit, room, part = 0.0, free_volt[CONTROLS], way[CONTROLS], abc[3];
+    int i, k, dead;
+    for (k = 0; k < CONTROLS; ++k) {
+        aim[k] = s->target_volt[k];
+    }
+    for (i = 0; i < LOADS; ++i) {
+        at_rest += (s->is_load_lost[i] ? 0.0 : LOAD_WEIGHT[i]) * z[i] * z[i];
+    }
+    limit = DEAD_FLAP_COST * at_rest;
+    room = limit - at_rest;
+    if (!isfinite(room) || part_that_is_borne(s, t, z, aim, room) >= 1.0) {
+        return;
+    }
+    for (i = 0; i < CONTROLS; ++i) {
+        for (k = 0; k < CONTROLS; ++k) {
+            normal[i][k] *= i / WIDTH == k / WIDTH ? 1.0 : 0.0;
+        }
+    }
+    if (solve_freely(normal, linear, free_volt)) {
+        for (k = 0; k < CONTROLS; ++k) {
+            s->alone_volt[k] = free_volt[k];
+        }
+    } else {
+        solve_in_discs(normal, linear, s->alone_volt);
+    }
+    for (k = 0; k < CONTROLS; ++k) {
+        way[k] = s->alone_volt[k] - s->target_volt[k];
+    }
+    for (dead = 0; dead < FLAPS; ++dead) {
+        double over;
+        without(s, dead, t, z, s->target_volt, way, abc);
+        over = abc[2] - limit;
+        if (over > 0.0) {
+            const double of_it = over / (sqrt(fmax(abc[1] * abc[1] - abc[0] * over, 0.0)) - abc[1]);
+            part = fmax(part, abc[1] < 0.0 ? fmin(of_it, 1.0) : 1.0);
+        }
+    }
+    for (k = 0; k < CONTROLS; ++k) {
+        aim[k] += part * way[k];
+    }
+    part = part_that_is_borne(s, t, z, aim, room);
+    for (k = 0; k < CONTROLS; ++k) {
+        aim[k] *= part;
+    }
+}
+
 /* J = E(Z'WZ)/q + rho u'u + du'S du, each flap acting with the chance q = FLAP_SURVIVAL;
- * u <- u + min(g, c) (d argmin J in the discs - u), c by the rate, d by a flap that stops. */
+ * u <- u + min(g, c) (aim - u), c by the rate; the aim is argmin J in the discs unless a flap that stops bars it. */
 static void step({{name}}_state *s, double volt[CONTROLS], double t[LOADS][CONTROLS], const double outputs[LOADS])
 {
     double normal[CONTROLS][CONTROLS], linear[CONTROLS], z[LOADS], weighted[LOADS][CONTROLS];
-    double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2], borne;
+    double free_volt[CONTROLS], fastest[2] = {0.0, 0.0}, share[2], aim[CONTROLS];
     int i, j, k, flap;
     for (i = 0; i < LOADS; ++i) {
         z[i] = s->is_load_lost[i] ? 0.0 : outputs[i];
@@ -227,18 +283,18 @@ static void step({{name}}_state *s, double volt[CONTROLS], double t[LOADS][CONTR
             s->target_volt[k] = free_volt[k];
         }
     }
-    borne = part_that_is_borne(s, t, z);
+    bear_a_dead_flap(s, t, z, normal, linear, aim);
     for (i = 0; i < PAIRS; ++i) {
-        const double *to = &s->target_volt[2 * i], *from = &volt[2 * i];
+        const double *to = &aim[2 * i], *from = &volt[2 * i];
         double *largest = &fastest[s->is_flap_lost[2 * i / WIDTH] != 0];
-        *largest = fmax(*largest, hypot(borne * to[0] - from[0], borne * to[1] - from[1]));
+        *largest = fmax(*largest, hypot(to[0] - from[0], to[1] - from[1]));
     }
     /* flaps that are lost go to 0 apart: the others do not wait for them */
     for (i = 0; i < 2; ++i) {
         share[i] = fmin(GAIN, RATE_LIMIT_VOLT / fmax(fastest[i], DBL_MIN));
     }
     for (k = 0; k < CONTROLS; ++k) {
-        volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (borne * s->target_volt[k] - volt[k]);
+        volt[k] += share[s->is_flap_lost[k / WIDTH] != 0] * (aim[k] - volt[k]);
     }
 }
 
@@ -248,7 +304,7 @@ void {{name}}_start({{name}}_state *s)
 {
     int i, k;
     for (k = 0; k < CONTROLS; ++k) {
-        s->control_volt[k] = s->target_volt[k] = 0.0;
+        s->control_volt[k] = s->target_volt[k] = s->alone_volt[k] = 0.0;
     }
     for (i = 0; i < LOADS; ++i) {
         s->is_load_lost[i] = 0;

@@ -37,6 +37,7 @@ typedef struct {
     double loads[{{NAME}}_LOADS];
     /* the rest is memory */
     double target_volt[{{NAME}}_CONTROLS];
+    double alone_volt[{{NAME}}_CONTROLS];
     double sums[{{NAME}}_WINDOW_REV][{{NAME}}_LOADS];
     int settling, sample, revolution;
     int is_load_lost[{{NAME}}_LOADS];

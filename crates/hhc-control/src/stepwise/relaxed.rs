@@ -58,8 +58,9 @@ impl RelaxedSettings {
 /// ```text
 /// J   = E(Z'WZ)/q + rho u'u + du' S du,   Z = Z_here + T du,   E over which flaps act, each with the chance q:
 ///       the blocks of T'WT between two flaps are multiplied by q
-/// u   <-  u_here + min(g, c) ( d argmin J  over |u_p| <= U_p  -  u_here ),   c: the largest change is at most the rate
-/// d:      the largest up to 1 with which no flap that stops leaves more than `dead_flap_cost` times J of zero control
+/// u   <-  u_here + min(g, c) ( u~ - u_here ),   c: the largest change is at most the rate
+/// u~:     argmin J  over |u_p| <= U_p, moved as little as need be toward that of q = 0, so that no flap that stops leaves more than
+///         `dead_flap_cost` times J of zero control
 /// ```
 /// - Without a limit that binds, `du = -g (T'WT + rho I + S)^-1 (T'W Z + rho u)`.
 /// - The optimum keeps the amplitudes; it is never a clipped one. The rate only shortens the step: every part of the way
@@ -81,8 +82,12 @@ pub struct RelaxedController {
     control_volt: Vec<f64>,
     /// Where the last step led; the next search starts there.
     target: DVector<f64>,
-    /// Part of it that is gone for, so that a flap that stops can be borne.
-    borne: f64,
+    /// Where the step goes, so that a flap that stops can be borne.
+    aim: DVector<f64>,
+    /// The optimum of flaps that each count on themselves alone, the way to it, and zero control.
+    alone: DVector<f64>,
+    way: DVector<f64>,
+    still: DVector<f64>,
     program: DiscProgram,
     weighted: DMatrix<f64>,
     loads: DVector<f64>,
@@ -120,7 +125,10 @@ impl RelaxedController {
             pairs_of_flap: layout.harmonics().len(),
             control_volt: layout.zero(),
             target: DVector::zeros(size),
-            borne: 1.0,
+            aim: DVector::zeros(size),
+            alone: DVector::zeros(size),
+            way: DVector::zeros(size),
+            still: DVector::zeros(size),
             program: DiscProgram::new(settings.amplitude_limit_volt.clone()),
             weighted: DMatrix::zeros(loads, size),
             loads: DVector::zeros(loads),
@@ -157,40 +165,78 @@ impl RelaxedController {
         check_outputs(outputs, &self.is_load_lost)?;
         self.form(t, outputs);
         self.is_limited = self.program.solve(&mut self.target);
-        self.borne = self.part_that_is_borne(t);
+        self.bear_a_dead_flap(t);
         // flaps that are lost go to 0 apart: the others do not wait for them
         let shares = [false, true].map(|is_lost| self.share(is_lost));
-        for (k, to) in self.target.iter().enumerate() {
+        for (k, to) in self.aim.iter().enumerate() {
             let is_lost = self.is_flap_lost[k / (2 * self.pairs_of_flap)];
-            let to = self.borne * to;
             self.control_volt[k] += shares[usize::from(is_lost)] * (to - self.control_volt[k]);
         }
         Ok(&self.control_volt)
     }
 
-    /// The largest part of the target, up to 1, with which `J` keeps its limit whichever flap stops.
+    /// Where the step goes: to the optimum, or as near to it as no flap that stops leaves more than the limit.
     ///
-    /// `J` is a parabola of the part, that of zero control at its start: a root of `a s^2 + 2 b s = (limit - 1) J0`.
-    fn part_that_is_borne(&self, t: &TMatrix) -> f64 {
-        let (t, controls_of_flap) = (t.as_matrix(), 2 * self.pairs_of_flap);
+    /// It turns toward the optimum of flaps that each count on themselves alone, as far as needed. Of three flaps and more that may
+    /// not be enough: then toward zero control.
+    fn bear_a_dead_flap(&mut self, t: &TMatrix) {
+        self.aim.copy_from(&self.target);
         let loads = self.loads.as_slice();
-        let weight = |i: usize| if self.is_load_lost[i] { 0.0 } else { self.weights[i] };
-        let at_rest: f64 = loads.iter().enumerate().map(|(i, z)| weight(i) * z * z).sum();
-        let room = (self.settings.dead_flap_cost - 1.0) * at_rest;
-        let mut part = 1.0_f64;
-        if !room.is_finite() {
-            return part;
+        let at_rest: f64 = loads.iter().enumerate().map(|(i, z)| self.weight(i) * z * z).sum();
+        let limit = self.settings.dead_flap_cost * at_rest;
+        let room = limit - at_rest;
+        if !room.is_finite() || self.part_that_is_borne(t, room) >= 1.0 {
+            return;
         }
-        for dead in 0..self.is_flap_lost.len() {
-            let (mut a, mut b) = (0.0, 0.0);
-            for (i, z) in loads.iter().enumerate() {
-                let mut moved = 0.0;
-                for (k, to) in self.target.iter().enumerate() {
-                    moved += if k / controls_of_flap == dead { 0.0 } else { t[(i, k)] * to };
-                }
-                a += weight(i) * moved * moved;
-                b += weight(i) * z * moved;
+        let controls_of_flap = 2 * self.pairs_of_flap;
+        for (j, mut column) in self.program.normal.column_iter_mut().enumerate() {
+            for (i, value) in column.iter_mut().enumerate() {
+                *value *= if i / controls_of_flap == j / controls_of_flap { 1.0 } else { 0.0 };
             }
+        }
+        self.program.solve(&mut self.alone);
+        self.way.copy_from(&self.alone);
+        self.way -= &self.target;
+        let mut part = 0.0_f64;
+        for dead in 0..self.is_flap_lost.len() {
+            let [a, b, c] = self.without(dead, t, &self.target, &self.way);
+            let over = c - limit;
+            if over > 0.0 {
+                let part_of_it = over / ((b * b - a * over).max(0.0).sqrt() - b);
+                part = part.max(if b < 0.0 { part_of_it.min(1.0) } else { 1.0 });
+            }
+        }
+        self.aim.axpy(part, &self.way, 1.0);
+        self.aim *= self.part_that_is_borne(t, room);
+    }
+
+    fn weight(&self, load: usize) -> f64 {
+        if self.is_load_lost[load] { 0.0 } else { self.weights[load] }
+    }
+
+    /// `J` without a flap at the control `x + s d` over `s`: `a s^2 + 2 b s + c`.
+    fn without(&self, dead: usize, t: &TMatrix, x: &DVector<f64>, d: &DVector<f64>) -> [f64; 3] {
+        let (t, controls_of_flap) = (t.as_matrix(), 2 * self.pairs_of_flap);
+        let [mut a, mut b, mut c] = [0.0; 3];
+        for (i, z) in self.loads.iter().enumerate() {
+            let (mut at, mut along) = (*z, 0.0);
+            for k in (0..x.len()).filter(|k| k / controls_of_flap != dead) {
+                at += t[(i, k)] * x[k];
+                along += t[(i, k)] * d[k];
+            }
+            a += self.weight(i) * along * along;
+            b += self.weight(i) * at * along;
+            c += self.weight(i) * at * at;
+        }
+        [a, b, c]
+    }
+
+    /// The largest part of the aim, up to 1, with which `J` rises by no more than `room` whichever flap stops: a root of
+    /// `a s^2 + 2 b s = room`.
+    fn part_that_is_borne(&self, t: &TMatrix, room: f64) -> f64 {
+        let mut part = 1.0_f64;
+        for dead in 0..self.is_flap_lost.len() {
+            let [a, b, _] = self.without(dead, t, &self.still, &self.aim);
             let root = (b * b + a * room).sqrt();
             if a > 0.0 {
                 part = part.min(if b > 0.0 { room / (b + root) } else { (root - b) / a });
@@ -201,12 +247,11 @@ impl RelaxedController {
 
     /// Part of the way to the target that the flaps which are lost, or those which are not, go: gain and rate.
     fn share(&self, is_lost: bool) -> f64 {
-        let pairs = self.target.as_slice().chunks_exact(2).zip(self.control_volt.chunks_exact(2));
+        let pairs = self.aim.as_slice().chunks_exact(2).zip(self.control_volt.chunks_exact(2));
         let mut fastest = 0.0_f64;
         for (pair, (to, from)) in pairs.enumerate() {
             if self.is_flap_lost[pair / self.pairs_of_flap] == is_lost {
-                let change = [0, 1].map(|d| self.borne * to[d] - from[d]);
-                fastest = fastest.max(change[0].hypot(change[1]));
+                fastest = fastest.max((to[0] - from[0]).hypot(to[1] - from[1]));
             }
         }
         self.settings.gain.min(self.settings.rate_limit_volt / fastest.max(f64::MIN_POSITIVE))
@@ -294,9 +339,9 @@ impl RelaxedController {
         flap * width..(flap + 1) * width
     }
 
-    /// Part of the optimum that the last step went for: below 1 where a flap that stops would leave too much.
-    pub fn borne(&self) -> f64 {
-        self.borne
+    /// Whether the last step went elsewhere than to the optimum, because a flap that stops would leave too much.
+    pub fn is_held_back(&self) -> bool {
+        self.aim != self.target
     }
 
     /// Whether a limit of an amplitude bound in the last step.

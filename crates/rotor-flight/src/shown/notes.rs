@@ -43,7 +43,7 @@ pub fn flight_notes(case: &Case, values: &FlightValues, actuator: &str) -> Vec<S
     }
     if values.dead_flap_percent < 1e6 {
         notes.push(format!(
-            "Flaps: by T no one that stops leaves J above {} % of that without control; the control goes for less where it would.",
+            "Flaps: by T no one that stops leaves J above {} % of that without control; the control turns away from its optimum where it would.",
             values.dead_flap_percent
         ));
     }
