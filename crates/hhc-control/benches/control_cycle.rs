@@ -23,21 +23,27 @@ const BUDGET_US: f64 = 20.0;
 enum Asked {
     Plain,
     All,
+    /// Flaps that are counted on and lean on each other, held back in every cycle by what one that stops would leave.
+    HeldBack,
 }
 
 impl Asked {
     /// Chance that a flap acts, limit of the rate (V), its weight (1/V^2).
     fn of_control(self) -> (f64, f64, f64) {
         match self {
-            Self::Plain => (1.0, f64::INFINITY, 0.0),
+            Self::Plain | Self::HeldBack => (1.0, f64::INFINITY, 0.0),
             Self::All => (0.9, 5.0, 1e-3),
         }
+    }
+
+    fn is_held_back(self) -> bool {
+        matches!(self, Self::HeldBack)
     }
 
     fn of_estimate(self) -> EstimatorSettings {
         let plain = EstimatorSettings::in_flight(85.0);
         match self {
-            Self::Plain => plain,
+            Self::Plain | Self::HeldBack => plain,
             Self::All => EstimatorSettings {
                 uncertainty: 0.5,
                 drift: 0.25,
@@ -65,12 +71,12 @@ fn rotor(harmonics: &[u32], asked: Asked) -> (TMatrix, Vec<f64>, CycleController
     let (flap_survival, rate_limit_volt, rate_weight) = asked.of_control();
     let settings = RelaxedSettings {
         gain: 0.3,
-        amplitude_limit_volt: vec![10.0; layout.pairs()],
+        amplitude_limit_volt: vec![if asked.is_held_back() { 60.0 } else { 10.0 }; layout.pairs()],
         effort_weight: 1e-3,
         flap_survival,
         rate_limit_volt,
         rate_weight,
-        dead_flap_cost: if flap_survival < 1.0 { 1.15 } else { f64::INFINITY },
+        dead_flap_cost: if let Asked::Plain = asked { f64::INFINITY } else { 1.1 },
         ..RelaxedSettings::of_layout(&layout)
     };
     let controller = RelaxedController::new(&layout, 12, settings).unwrap();
@@ -81,7 +87,7 @@ fn rotor(harmonics: &[u32], asked: Asked) -> (TMatrix, Vec<f64>, CycleController
 /// So many cycles with the loads of a rotor that answers, in the time of the controller alone.
 fn cycles(harmonics: &[u32], asked: Asked, count: u64) -> Duration {
     let (t, z0, mut flying) = rotor(harmonics, asked);
-    let mut taken = Duration::ZERO;
+    let (mut taken, mut held_back) = (Duration::ZERO, 0);
     for k in 0..count {
         let change = t.loads_for(flying.control_volt()).unwrap();
         let noise = |i: usize| f64::sin((i * i * 7) as f64 + 13.0 * k as f64);
@@ -90,7 +96,11 @@ fn cycles(harmonics: &[u32], asked: Asked, count: u64) -> Duration {
         let start = Instant::now();
         black_box(flying.step(black_box(&loads)).unwrap());
         taken += start.elapsed();
+        held_back += u64::from(flying.controller().is_held_back());
     }
+    // the first cycles only begin to lean
+    let is_meant = !asked.is_held_back() || count < 50 || 2 * held_back > count;
+    assert!(is_meant, "held back in {held_back} of {count}");
     taken
 }
 
@@ -101,6 +111,7 @@ fn controllers(criterion: &mut Criterion) {
         ("one harmonic, all that may be asked", one, Asked::All),
         ("2 to 5 per rev", all, Asked::Plain),
         ("2 to 5 per rev, all that may be asked", all, Asked::All),
+        ("2 to 5 per rev, held back", all, Asked::HeldBack),
     ] {
         let each = || 1e6 * cycles(harmonics, asked, 50).as_secs_f64() / 50.0;
         let us = (0..40).map(|_| each()).fold(f64::INFINITY, f64::min);
