@@ -122,6 +122,8 @@ impl BenchIdentification {
             }
         };
         let reason = match (choice, cross_validation) {
+            // orders of one family may have been compared all the same
+            (None, _) if table.left_out == LeftOut::Nothing => PickReason::NothingToChooseBy,
             (None, Some(_)) if table.left_out == LeftOut::Blocks => PickReason::BlocksInTime,
             (None, Some(_)) => PickReason::CrossValidation,
             (None, None) => PickReason::NothingToChooseBy,

@@ -64,11 +64,12 @@ impl BenchIdentification {
         let not_described = (nrmse_percent > 100.0 * MOST_UNEXPLAINED)
             .then_some(Finding::NotDescribed { nrmse_percent });
         let of_data = self.identification.summary.findings.iter().cloned();
-        of_data
-            .filter(|finding| !matches!(finding, Finding::NotDescribed { .. }))
-            .chain(not_described)
+        // what is said of the model stands first: a screen shows a few
+        not_described
+            .into_iter()
             .chain(self.better_held_out())
             .chain(self.levels_differ().unwrap_or_default())
+            .chain(of_data.filter(|finding| !matches!(finding, Finding::NotDescribed { .. })))
             .map(|finding| FindingLine {
                 severity: finding.severity(),
                 message: said(subject, &finding, self.settings.deg_per_um),
@@ -311,7 +312,11 @@ impl IdentifyResult {
             screen.labelled(label, &text);
         }
         if !self.models.is_empty() {
-            screen.line("\nModels on the same split, NRMSE in %; * chosen by the training runs left out of its fit");
+            let why = match self.left_out {
+                LeftOut::Nothing => "the usual one: too few training runs to choose by",
+                _ => "chosen by the training runs left out of its fit",
+            };
+            screen.line(format_args!("\nModels on the same split, NRMSE in %; * {why}"));
             screen.block(&as_text(&self.models_compared(false)));
         }
         if !held_out.is_empty() {

@@ -74,6 +74,10 @@ fn unitless(named: &[(usize, Channel)], left_out: &[String]) -> Fault {
             rate = " --sampling-hz RATE, for stamps without a unit are no seconds";
             None
         }
+        "time_s" => {
+            rate = " (in s; time_ms if its stamps are in ms: their unit is not told)";
+            Some(format!("{own}={source}"))
+        }
         "displacement_um" if is_told_in_volt(source) => Some(format!("{SENSOR}_V={source}")),
         _ => Some(format!("{own}={source}")),
     });

@@ -255,6 +255,22 @@ fn a_record_of_its_own_is_read_as_the_import_reads_it() {
     }
 }
 
+/// The times of a `LabVIEW` measurement stand in its column, where it has one, whatever its one step says.
+#[test]
+fn times_of_a_labview_measurement_say_more_than_its_step() {
+    let text = |columns: &str| {
+        let head = format!("LabVIEW Measurement\nX_Columns\t{columns}\n***End_of_Header***\n");
+        let own = "Channels\t2\nY_Unit_Label\tVolts\tMicrometers\nDelta_X\t1.0\t1.0\n***End_of_Header***\n";
+        let row = |k: u32| format!("{:.4}\t{}\t{}", 0.002 * f64::from(k), k % 7, k % 5);
+        let rows = (0..40).map(row).collect::<Vec<_>>().join("\n");
+        format!("{head}{own}X_Value\tCommand\tDisplacement\n{rows}")
+    };
+    let read = |text: String| EvenRecord::read(&Source { name: "a.lvm".into(), text }).unwrap();
+    assert!((read(text("One")).step_s - 0.002).abs() < 1e-9);
+    // without a column of times the step is all there is
+    assert!((read(text("No")).step_s - 1.0).abs() < 1e-9);
+}
+
 /// What a record of its own needs beside a time: a name, or one column of the quantity.
 #[test]
 fn columns_are_found_by_name_and_quantity() {

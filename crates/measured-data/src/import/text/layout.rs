@@ -4,7 +4,7 @@
 //! and stated sampling.
 
 use super::numbers::{number, stamp};
-use super::preamble::{Preamble, is_key, is_unit_key, unit_of};
+use super::preamble::{Preamble, is_key, is_unit_key, unit_of, word};
 use super::row::Row;
 use crate::import::columns::{Choice, ColumnOptions};
 use crate::problem::Fault;
@@ -277,6 +277,10 @@ impl Layout {
             counters: Vec::new(),
         };
         layout.name(&block, extra, &preamble);
+        let mut names = layout.names.iter().flatten();
+        if preamble.has_times && names.any(|name| word(name) == "xvalues") {
+            layout.step_s = None;
+        }
         let is_time = |i: usize| {
             let of_time = |c: Channel| c.unit.dimension == Dimension::Time;
             let name = layout.names.as_ref().map_or("", |names| &names[i]);
@@ -385,7 +389,11 @@ impl Layout {
             let stated = place.and_then(|place| preamble.unit(place, channels.len()));
             let of_time = || {
                 let by_step = self.step_s.is_some_and(|step| i == first && rises_by(i, step));
-                if by_step { Some("s".to_owned()) } else { preamble.time_unit.clone() }
+                if by_step || preamble.has_times && word(&own[i]) == "xvalue" {
+                    Some("s".to_owned())
+                } else {
+                    preamble.time_unit.clone()
+                }
             };
             let unit = match () {
                 () if self.stamps.contains(&i) => Some("s".to_owned()),

@@ -56,7 +56,7 @@ const TIME_UNIT: [&str; 6] =
     ["xunit", "xunits", "hunit", "hunits", "xunitlabel", "horizontalunits"];
 
 /// A word as it is looked up: letters and digits alone, in lower case, without what stands in brackets.
-fn word(text: &str) -> String {
+pub(super) fn word(text: &str) -> String {
     let text = text.split(['(', '[']).next().unwrap_or_default();
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
@@ -91,6 +91,8 @@ pub(super) struct Preamble {
     pub(super) units: Vec<String>,
     /// Names of the columns, from words such as `NAME0`.
     pub(super) names: Vec<String>,
+    /// Whether columns `X_Value` of a `LabVIEW` measurement hold the times, s: they say more than its one step.
+    pub(super) has_times: bool,
 }
 
 impl Preamble {
@@ -141,7 +143,10 @@ impl Preamble {
             quantity(&values[at], key, decimal).filter(|_| !is_parted)
         };
         let positive = |value: f64| Some(value).filter(|v| *v > 0.0 && v.is_finite());
-        if is_name {
+        if is(&["xcolumns"]) {
+            self.has_times |=
+                values.iter().any(|own| matches!(word(own).as_str(), "one" | "multi"));
+        } else if is_name {
             self.names.extend(values.first().cloned());
         } else if is(&STEP) && self.step_s.is_none() {
             self.step_s = quantity().and_then(|q| positive(q.step_s(false)));
