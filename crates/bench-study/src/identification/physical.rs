@@ -22,6 +22,8 @@ pub struct PhysicalParameter {
 
 /// Half of a 95 % interval over the standard deviation.
 const HALF: f64 = 1.96;
+/// Step of the slope of a reading.
+const SLOPE: f64 = 1e-6;
 /// Part of an interval that ends next to a bound.
 const NEAR: f64 = 1e-3;
 
@@ -190,7 +192,11 @@ fn read(
     // a square is not negative on either side of zero
     let ends = [of(value - half), of(value + half)];
     let is_square = estimate.name.starts_with("root");
-    let low = if is_square && half > value.abs() { 0.0 } else { f64::min(ends[0], ends[1]) };
+    // a share that is zero lies infinitely far away on its own scale: there the straight line counts
+    let slope = (of(value + SLOPE) - of(value - SLOPE)) / (2.0 * SLOPE);
+    let is_share = estimate.name.ends_with("logit") && half * slope >= here;
+    let has_zero = is_share || (is_square && half > value.abs());
+    let low = if has_zero { 0.0 } else { f64::min(ends[0], ends[1]) };
     let high = f64::max(ends[0], ends[1]);
     let is_near = |bound: f64| {
         bound.is_finite() && (here - bound).abs() <= NEAR * (bounds[1] - bounds[0]).abs().min(1.0)
@@ -250,6 +256,12 @@ mod tests {
         assert!((low - 0.01 * (-0.196_f64).exp()).abs() < 1e-12 && high > 0.012, "{low} {high}");
         assert_eq!((found[2].value, found[2].interval), (20.0, None));
         assert_eq!(found[3].remark, Some("at its bound"));
+        // half a percent of creep give or take as much may be none
+        let creep = |std_deviation| {
+            let own = estimate("creep per decade, logit", (0.5_f64 / 5.5).ln(), std_deviation);
+            physical(&[own], &[], &model, ["V", "deg"])[0].interval.unwrap()[0]
+        };
+        assert!(creep(0.6) <= 0.0 && creep(0.3) > 0.2);
         // a shape has no physical value; of two intervals the wider one stands
         assert_eq!(found.len(), 4);
         let found = physical(&estimates, &known, &model, ["V", "deg"]);

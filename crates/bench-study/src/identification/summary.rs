@@ -463,6 +463,9 @@ impl IdentifyResult {
             LeftOut::Records => {
                 "Left out: training runs of one frequency or one amplitude at a time; by this column the model\nmarked * is chosen, a simpler one if it is within 3 %, the noise taken off."
             }
+            LeftOut::RecordsAndBlocks => {
+                "Left out: slow training runs one at a time, and blocks in time of the only fast one; by this column the\nmodel marked * is chosen, a simpler one if it is within 3 %, the noise taken off."
+            }
             LeftOut::Blocks if self.trains_one() => {
                 "Left out: blocks in time of the one training run, each run through and scored on the block; by this\ncolumn the model marked * is chosen, a simpler one if it is within 3 %, the noise taken off."
             }
@@ -556,7 +559,7 @@ fn model_table(models: &[ModelLine], has_levels: bool) -> Section {
     )
 }
 
-fn optional(value: Option<f64>, text: impl Fn(f64) -> String) -> String {
+fn optional<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
     value.map_or_else(|| "-".into(), text)
 }
 
@@ -628,7 +631,8 @@ fn fit_cells(run: &StoredFit) -> ([String; 4], [String; 6]) {
     (
         [
             run.id.clone(),
-            significant(run.frequency_hz, 3).to_string(),
+            // what does not repeat has none
+            optional(run.response.as_ref(), |_| significant(run.frequency_hz, 3).to_string()),
             significant(run.amplitude_volt, 3).to_string(),
             format!("{:.2}", run.nrmse_percent),
         ],

@@ -367,3 +367,85 @@ fn records_beyond_all_others_are_not_left_out() {
     assert_eq!(left_out(&[moved(-45.0, 25.0), moved(45.0, 30.0)]), LeftOut::Blocks);
     assert_eq!(left_out(&[moved(-45.0, 25.0), moved(0.0, 80.0)]), LeftOut::Records);
 }
+
+/// Holds of some voltages, 40 s each.
+fn holds(volts: &[f64]) -> (String, f64, Vec<f64>) {
+    let held = volts.iter().flat_map(|volt| std::iter::repeat_n(*volt, 2000));
+    ("holds".into(), 0.02, held.collect())
+}
+
+/// A record of holds neither repeats nor is slow: what it says of creep must reach the fit.
+#[test]
+fn holds_that_train_are_fitted() {
+    let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(12)));
+    truth.linkage.push(LinkageStage::LogCreep(LogCreep::new(0.02)));
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    let normal = Normal::new(0.0, 0.2).unwrap();
+    let loops = [0.4, 10.0].map(|hz| sine(hz, 85.0, 4.0, 0.01 / (1.0 + hz)));
+    let runs = loops.into_iter().chain([holds(&[20.0, 120.0, 60.0, 140.0])]);
+    let records: Vec<BenchRecord> =
+        runs.map(|run| record(&truth, run, || normal.sample(&mut rng))).collect();
+    let used = |record_use| {
+        let mut records = records.clone();
+        records[2].record_use = Some(record_use);
+        let families = vec![Family::StaticPreisachCreep];
+        let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
+        let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
+        let fitted = table.rows[0].fitted.clone().unwrap();
+        let stage = fitted.model.linkage.first().cloned();
+        let Some(LinkageStage::LogCreep(creep)) = stage else { unreachable!("{stage:?}") };
+        (creep.rate_per_decade, fitted.fits[2].nrmse)
+    };
+    let (without, with) = (used(RecordUse::HeldOut), used(RecordUse::Train));
+    println!("held out {without:?}, trained {with:?}");
+    let off = [without, with].map(|own: (f64, f64)| (own.0 / 0.02 - 1.0).abs());
+    assert!(off[1] < 0.05 && off[0] > 2.0 * off[1] && with.1 < without.1, "{off:?}");
+}
+
+/// The time from which creep is counted is found to its decade, and with it the rate.
+#[test]
+fn creep_is_found_with_the_time_it_begins() {
+    for from_s in [0.01, 0.1] {
+        let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(12)));
+        truth.linkage.push(LinkageStage::LogCreep(LogCreep { from_s, ..LogCreep::new(0.02) }));
+        let mut rng = ChaCha8Rng::seed_from_u64(12);
+        let normal = Normal::new(0.0, 0.1).unwrap();
+        let fast = [sine(10.0, 60.0, 10.0, 1e-3), sine(1.0, 60.0, 4.0, 2e-3)];
+        let loops = [sine(0.4, 85.0, 2.0, 1e-2), reversals(), sine(0.02, 70.0, 2.0, 0.1)];
+        let runs = loops.into_iter().chain(fast);
+        let records: Vec<BenchRecord> =
+            runs.map(|run| record(&truth, run, || normal.sample(&mut rng))).collect();
+        let families = vec![Family::StaticPreisachCreep];
+        let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
+        let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
+        let stage = table.rows[0].fitted.as_ref().unwrap().model.linkage.first().cloned();
+        let Some(LinkageStage::LogCreep(found)) = stage else { unreachable!("{stage:?}") };
+        println!("{from_s} s: {found:?}");
+        assert!((found.from_s / from_s - 1.0).abs() < 1e-9, "{found:?}");
+        assert!((found.rate_per_decade / 0.02 - 1.0).abs() < 0.15, "{found:?}");
+    }
+}
+
+/// Slow runs and one fast one: the slow ones are left out in turn, and parts of the fast one, so that a lag still shows.
+#[test]
+fn a_single_fast_run_leaves_something_to_choose_by() {
+    let chosen = |lag_s: f64| {
+        let mut truth = bare(ActuatorLaw::StaticPreisach(static_law(12)));
+        if lag_s > 0.0 {
+            truth.amplifier.push(AmplifierStage::Lag(Lag { tau_s: lag_s }));
+        }
+        let mut rng = ChaCha8Rng::seed_from_u64(13);
+        let normal = Normal::new(0.0, 0.3).unwrap();
+        let slow = [85.0, 60.0, 35.0, 15.0].map(|volt| sine(0.4, volt, 4.0, 5e-3));
+        let runs = slow.into_iter().chain([sine(10.0, 60.0, 20.0, 1e-3)]);
+        let records: Vec<BenchRecord> =
+            runs.map(|run| record(&truth, run, || normal.sample(&mut rng))).collect();
+        let families = vec![Family::StaticPreisach, Family::DynamicPreisach];
+        let candidates = Candidates { families, orders: Vec::new(), ..Candidates::default() };
+        let table = compare_models(&records, &settings(), &candidates, &|| ()).unwrap();
+        assert_eq!(table.left_out, LeftOut::RecordsAndBlocks);
+        table.best().unwrap().family
+    };
+    assert_eq!(chosen(0.0), Family::StaticPreisach);
+    assert_eq!(chosen(0.003), Family::DynamicPreisach);
+}

@@ -25,7 +25,9 @@ pub(crate) fn fit(
     training: &Training<'_>,
     given: Given<'_>,
 ) -> Result<Fitted, PreisachError> {
-    if family.needs_rate() && training.fast.is_empty() {
+    let has_rate =
+        !training.fast.is_empty() || !(family.needs_cycles() || training.others.is_empty());
+    if family.needs_rate() && !has_rate {
         return Err(PreisachError::NoTrainingRecord {
             part: "what depends on rate",
             remedy: "record periodic runs at two or more frequencies, for instance 1 and 10 Hz",

@@ -192,7 +192,7 @@ pub fn compare_models(
         orders = tried
             .par_iter()
             .map(|&order| {
-                let known = trials[chosen].as_ref().filter(|_| order == own);
+                let known = trials[chosen].as_ref();
                 Ok(contest.row(family, order, Folds::All, known).inspect(|_| done())?.0)
             })
             .collect::<Result<Vec<_>, PreisachError>>()?;
@@ -222,6 +222,14 @@ pub fn compare_models(
 struct Trial {
     whole: Fitted,
     errors: Vec<f64>,
+}
+
+impl Trial {
+    /// Root mean square error of what was left out; none where nothing was.
+    fn error(&self) -> Option<f64> {
+        let mean = self.errors.iter().sum::<f64>() / self.errors.len() as f64;
+        (!self.errors.is_empty()).then(|| mean.sqrt())
+    }
 }
 
 /// The row with the smallest cross-validated error, an earlier one if it is at most `within` times it, both without
@@ -296,8 +304,10 @@ impl<'a> Contest<'a> {
         })
     }
 
-    /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer
-    /// left.
+    /// A row of the table, and what a row with more folds can go on from; `known`: what one with fewer left, or of another
+    /// order, which tells the time that creep begins.
+    ///
+    /// Of several such times the one with the smallest error of what is left out stands.
     fn row(
         &self,
         family: Family,
@@ -308,39 +318,58 @@ impl<'a> Contest<'a> {
         let settings = order.within(self.settings);
         settings.check()?;
         let grid = PreisachGrid::new(settings.range_volt, order.levels)?;
-        let anew = (order != Order::of(self.settings))
-            .then(|| self.bench.prepared(&grid, &settings))
-            .transpose()?;
+        let is_own = order == Order::of(self.settings);
+        let anew = (!is_own).then(|| self.bench.prepared(&grid, &settings)).transpose()?;
         let prepared = anew.as_ref().unwrap_or(&self.prepared);
         let training = Training::of(prepared, grid, &settings)?;
-        let fit = |training: &Training, whole: Option<&Fitted>| {
-            let (smoothness, mode) = (self.smoothness, self.mode.as_ref());
-            by_family::fit(family, training, Given { smoothness, mode, whole })
-        };
-        let whole = known.map_or_else(|| fit(&training, None), |known| Ok(known.whole.clone()));
-        let left_out = |fold: &Fold, whole: &Fitted| {
-            fold.square_error(&training, |rest| Ok(fit(rest, Some(whole))?.model))
-        };
         let folds = folds::of(&training, which);
-        let trial = whole.as_ref().ok().map(|whole| {
-            let mut errors = known.map_or_else(Vec::new, |known| known.errors.clone());
-            // the folds of conditions come first
-            let rest = folds.get(errors.len()..).unwrap_or_default().par_iter();
-            let rest = rest.map(|fold| left_out(fold, whole).unwrap_or(f64::INFINITY));
-            errors.extend(rest.collect::<Vec<f64>>());
-            Trial { whole: whole.clone(), errors }
-        });
+        let begun = known.and_then(|known| known.whole.log_creep()).map(|creep| [creep.from_s]);
+        let begins = begun.as_ref().map_or(family.creep_begins_s(), |begun| begun.as_slice());
+        let known = known.filter(|_| is_own);
+        let trials = begins.par_iter().map(|&s| self.trial(family, &training, &folds, s, known));
+        let trials: Vec<Result<Trial, PreisachError>> = trials.collect();
+        let error = |trial: &Result<Trial, PreisachError>| {
+            trial.as_ref().ok().and_then(Trial::error).unwrap_or(f64::INFINITY)
+        };
+        // nothing left out: the usual time
+        let best = trials.into_iter().reduce(|a, b| if error(&b) < error(&a) { b } else { a });
+        let trial = best.unwrap_or(Err(PreisachError::NotFitted { family: family.name() }));
         let noise = folds::noise(&training, &folds, self.rest_noise_deg);
-        let errors = trial.as_ref().map_or(&[][..], |trial| &trial.errors);
-        let cross_validation =
-            (!errors.is_empty()).then(|| (errors.iter().sum::<f64>() / errors.len() as f64).sqrt());
-        let fitted = whole.and_then(|Fitted { mut model, parameters }| {
+        let cross_validation = trial.as_ref().ok().and_then(Trial::error);
+        let fit = |trial: &Trial| {
+            let Fitted { mut model, parameters } = trial.whole.clone();
             model.trained = Some(trained_range(&training, prepared));
             let fits = prepared.iter().map(|r| compare::compare(&model, r));
             let fits = fits.collect::<Result<Vec<_>, _>>()?;
             let model = self.bench.rigged(model, &training);
             Ok(FittedModel { model, fits, parameters })
-        });
-        Ok((ModelRow { family, order, cross_validation, noise, fitted }, trial))
+        };
+        let fitted = trial.as_ref().map_err(Clone::clone).and_then(fit);
+        Ok((ModelRow { family, order, cross_validation, noise, fitted }, trial.ok()))
+    }
+
+    /// A family fitted to all training records and to all but each fold, creep begun at a time.
+    fn trial(
+        &self,
+        family: Family,
+        training: &Training<'_>,
+        folds: &[Fold],
+        creep_from_s: f64,
+        known: Option<&Trial>,
+    ) -> Result<Trial, PreisachError> {
+        let (smoothness, mode) = (self.smoothness, self.mode.as_ref());
+        let fit = |training: &Training, whole: Option<&Fitted>| {
+            let given = Given { smoothness, mode, whole, creep: None, creep_from_s };
+            by_family::fit(family, training, given)
+        };
+        let whole = known.map_or_else(|| fit(training, None), |known| Ok(known.whole.clone()))?;
+        let left_out =
+            |fold: &Fold| fold.square_error(training, |rest| Ok(fit(rest, Some(&whole))?.model));
+        let mut errors = known.map_or_else(Vec::new, |known| known.errors.clone());
+        // the folds of conditions come first
+        let rest = folds.get(errors.len()..).unwrap_or_default().par_iter();
+        let rest = rest.map(|fold| left_out(fold).unwrap_or(f64::INFINITY));
+        errors.extend(rest.collect::<Vec<f64>>());
+        Ok(Trial { whole, errors })
     }
 }

@@ -5,7 +5,7 @@ use crate::identify::fit::output_error::{
     Build, Estimate, Minimum, OutputError, Pull, Slopes, Uncertainty, estimates,
 };
 use crate::identify::records::prepared::Prepared;
-use crate::{ActuatorModel, PreisachError};
+use crate::{ActuatorModel, LinkageStage, LogCreep, PreisachError};
 use nalgebra::DVector;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -90,7 +90,7 @@ impl Family {
         }
     }
 
-    /// Whether a fit needs records at several frequencies.
+    /// Whether a fit needs records at several frequencies, or of other fast motion.
     pub fn needs_rate(self) -> bool {
         use Family::{DynamicPreisach, DynamicPreisachCreep, DynamicPreisachFirst};
         use Family::{LinearLag, PrandtlIshlinskii, StaticPreisachMode, StaticPreisachRelaxation};
@@ -106,6 +106,23 @@ impl Family {
         )
     }
 
+    /// Whether a fit needs steady cycles at several frequencies; others that depend on rate are found from any motion.
+    pub(crate) fn needs_cycles(self) -> bool {
+        use Family::{DynamicPreisach, DynamicPreisachCreep, DynamicPreisachFirst};
+        matches!(self, DynamicPreisachFirst | DynamicPreisach | DynamicPreisachCreep)
+    }
+
+    /// The times that creep is tried to begin, s, the usual one first; of families without it one that means nothing.
+    ///
+    /// Records tell the time to a decade at best. Creep that begins early is much like a lag: only what is left out of the fit
+    /// tells them apart.
+    pub(crate) fn creep_begins_s(self) -> &'static [f64] {
+        match self {
+            Self::StaticPreisachCreep | Self::DynamicPreisachCreep => &[0.1, 0.01],
+            _ => &[0.1],
+        }
+    }
+
     /// Whether a mode is part of it.
     pub fn has_mode(self) -> bool {
         matches!(self, Self::BoucWenMode | Self::HystereticOscillator | Self::StaticPreisachMode)
@@ -119,6 +136,16 @@ pub(crate) struct Fitted {
     pub(crate) parameters: Vec<Estimate>,
 }
 
+impl Fitted {
+    /// The creep along the logarithm of time that is part of the model.
+    pub(crate) fn log_creep(&self) -> Option<LogCreep> {
+        self.model.linkage.iter().find_map(|stage| match stage {
+            LinkageStage::LogCreep(creep) => Some(*creep),
+            _ => None,
+        })
+    }
+}
+
 /// What a fit takes as given: found once on all training records, it is not sought again in every
 /// fold of a cross-validation.
 #[derive(Debug, Clone, Copy)]
@@ -129,6 +156,10 @@ pub(crate) struct Given<'a> {
     pub(crate) mode: Option<&'a LinearMode>,
     /// A model of the family fitted to all training records, if there is one already.
     pub(crate) whole: Option<&'a Fitted>,
+    /// The time creep begins, s, where that is part of the family and not known from elsewhere.
+    pub(crate) creep_from_s: f64,
+    /// The creep of a fit to records of the same commands: its rate is sought near by, the time it begins is kept.
+    pub(crate) creep: Option<LogCreep>,
 }
 
 impl Given<'_> {

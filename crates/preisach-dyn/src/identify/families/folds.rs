@@ -27,6 +27,8 @@ pub enum LeftOut {
     Nothing,
     /// Training records: those of one frequency, of one amplitude, or single ones.
     Records,
+    /// Single slow training records, and blocks in time of the only fast one.
+    RecordsAndBlocks,
     /// Blocks in time of the only training record, or of the largest where the commands of each go beyond those of the rest.
     Blocks,
 }
@@ -34,10 +36,12 @@ pub enum LeftOut {
 impl LeftOut {
     /// What some folds are of.
     pub(crate) fn of(folds: &[Fold]) -> Self {
-        match folds.first() {
-            None => Self::Nothing,
-            Some(Fold::Records(_)) => Self::Records,
-            Some(Fold::Block(..)) => Self::Blocks,
+        let is_block = |fold: &Fold| matches!(fold, Fold::Block(..));
+        match folds {
+            [] => Self::Nothing,
+            _ if folds.iter().all(is_block) => Self::Blocks,
+            _ if folds.iter().any(is_block) => Self::RecordsAndBlocks,
+            _ => Self::Records,
         }
     }
 }
@@ -45,7 +49,7 @@ impl LeftOut {
 /// Which folds there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Folds {
-    /// Frequencies and amplitudes of the fast records.
+    /// Frequencies and amplitudes of the fast records; of a single one, blocks in time and the slow records.
     Conditions,
     /// Slow records too.
     All,
@@ -101,7 +105,9 @@ impl Fold {
 /// The folds of some training records; none where there are too few.
 ///
 /// Records whose commands go beyond those of all others say how a model is beyond what trained it, which is not asked: they
-/// are no fold. Where slow records alone train and none is left, blocks in time of the largest are.
+/// are no fold. Where slow records alone train and none is left, blocks in time of the largest are. A single fast record
+/// cannot be left out, or nothing would be known of rate: blocks in time of it are, beside the slow records. Steps, fades
+/// and other records that neither repeat nor are slow are left out one by one.
 pub(crate) fn of(training: &Training, which: Folds) -> Vec<Fold> {
     let Training { slow, fast, .. } = training;
     let all = training.all();
@@ -109,24 +115,33 @@ pub(crate) fn of(training: &Training, which: Folds) -> Vec<Fold> {
     let within = |groups: Vec<Vec<usize>>| -> Vec<Vec<usize>> {
         groups.into_iter().filter(|places| is_within(&swings, places)).collect()
     };
-    let single = || (0..slow.len()).map(|place| vec![place]).collect::<Vec<_>>();
-    let records = |folds: Vec<Vec<usize>>| folds.into_iter().map(Fold::Records).collect();
-    if fast.is_empty() {
-        let folds = if slow.len() < 2 { Vec::new() } else { within(single()) };
-        if !folds.is_empty() {
-            return records(folds);
+    let single = |places: Range<usize>| within(places.map(|place| vec![place]).collect());
+    let records = |folds: Vec<Vec<usize>>| folds.into_iter().map(Fold::Records).collect::<Vec<_>>();
+    let slow_ones = || if slow.len() < 2 { Vec::new() } else { single(0..slow.len()) };
+    let mut others = records(single(slow.len() + fast.len()..all.len()));
+    let mut folds = match &fast[..] {
+        [] => records(slow_ones()),
+        [only] => {
+            let mut folds = records(slow_ones());
+            folds.extend(blocks(slow.len(), only));
+            folds
         }
+        _ => {
+            let conditions = conditions(fast, slow.len());
+            let kept = within(conditions.clone());
+            records(if kept.is_empty() { conditions } else { kept })
+        }
+    };
+    folds.append(&mut others);
+    if folds.is_empty() {
         let span = |place: &usize| swings[*place][1] - swings[*place][0];
         let largest = (0..slow.len()).max_by(|a, b| span(a).total_cmp(&span(b)).then(b.cmp(a)));
-        return largest.map_or_else(Vec::new, |place| blocks(place, slow[place]));
+        folds = largest.map_or_else(Vec::new, |place| blocks(place, slow[place]));
     }
-    let conditions = conditions(fast, slow.len());
-    let kept = within(conditions.clone());
-    let mut folds = if kept.is_empty() { conditions } else { kept };
-    if slow.len() >= 3 && which == Folds::All {
-        folds.extend(within(single()));
+    if fast.len() > 1 && slow.len() > 2 && which == Folds::All {
+        folds.extend(records(single(0..slow.len())));
     }
-    records(folds)
+    folds
 }
 
 /// The extremes of the commands of a record up to the last sample that trains.

@@ -18,6 +18,8 @@ use rayon::prelude::*;
 
 /// Rates of creep per decade that are tried.
 const CREEP_RATES: [f64; 5] = [0.005, 0.01, 0.015, 0.02, 0.03];
+/// Rates that are tried near a known one, over it.
+const RATIOS_NEAR_BY: [f64; 3] = [0.7, 1.0, 1.3];
 /// Rounds of static map and stages.
 const ROUNDS: usize = 5;
 /// Least and largest creep per decade of a fit.
@@ -46,7 +48,7 @@ fn without_stage(record: &BenchRecord, stage: &StageStep) -> BenchRecord {
 }
 
 /// Static or dynamic Preisach before creep: the rate of creep that fits the training records best, the law
-/// fitted to the records with that creep taken off.
+/// fitted to the records with that creep taken off. The time it begins is given.
 pub(crate) fn creep(
     family: Family,
     training: &Training<'_>,
@@ -54,14 +56,8 @@ pub(crate) fn creep(
 ) -> Result<Fitted, PreisachError> {
     let (grid, settings, all) = (training.grid, training.settings, training.all());
     let unit = Calibration { deg_per_um: 1.0, zero_um: 0.0 };
-    let per_decade = |stage: &LinkageStage| match stage {
-        LinkageStage::LogCreep(creep) => Some(creep.rate_per_decade),
-        _ => None,
-    };
-    let given_rate = given.whole.and_then(|whole| whole.model.linkage.iter().find_map(per_decade));
-    let rates = given_rate.map_or(CREEP_RATES.to_vec(), |rate| vec![rate]);
-    let fit_at = |rate: f64| -> Result<(f64, Fitted), PreisachError> {
-        let creep = LinkageStage::LogCreep(LogCreep::new(rate));
+    let fit_with = |creep: LogCreep| -> Result<(f64, Fitted), PreisachError> {
+        let creep = LinkageStage::LogCreep(creep);
         let strip =
             |r: &&Prepared| without_stage(r.record, &creep.prepared(r.record.time_step_s, &unit));
         let stripped: Vec<BenchRecord> = all.iter().map(strip).collect();
@@ -87,6 +83,14 @@ pub(crate) fn creep(
         let squares = all.iter().map(|r| Ok(compare::training_nrmse(&model, r)?.powi(2)));
         Ok((squares.sum::<Result<f64, PreisachError>>()?, Fitted { model, parameters }))
     };
+    if let Some(known) = given.whole.and_then(Fitted::log_creep) {
+        return Ok(fit_with(known)?.1);
+    }
+    let (from_s, rates) = match given.creep {
+        Some(known) => (known.from_s, RATIOS_NEAR_BY.map(|r| r * known.rate_per_decade).to_vec()),
+        None => (given.creep_from_s, CREEP_RATES.to_vec()),
+    };
+    let fit_at = |rate: f64| fit_with(LogCreep { from_s, ..LogCreep::new(rate) });
     let tried: Vec<_> = rates.par_iter().map(|&rate| fit_at(rate)).collect();
     let mut tried = tried.into_iter().collect::<Result<Vec<_>, _>>()?;
     let squares: Vec<f64> = tried.iter().map(|own| own.0).collect();

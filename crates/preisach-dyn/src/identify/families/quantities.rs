@@ -109,7 +109,8 @@ pub fn quantities(model: &ActuatorModel, swing_volt: [f64; 2]) -> Vec<Quantity> 
                 }
             }
             LinkageStage::LogCreep(creep) => {
-                put("creep", QuantityUnit::PercentPerDecade, 100.0 * creep.rate_per_decade);
+                let name = if creep.from_s < 0.03 { "creep after 0.01 s" } else { "creep" };
+                put(name, QuantityUnit::PercentPerDecade, 100.0 * creep.rate_per_decade);
             }
             LinkageStage::Accommodation(stage) => {
                 put("share of the accommodation", QuantityUnit::Percent, 100.0 * stage.share);
@@ -170,12 +171,14 @@ impl ModelComparison {
         let mode = row.family.has_mode().then(|| LinearMode::of(&training)).transpose()?;
         let whole = Fitted { model: known.model.clone(), parameters: known.parameters.clone() };
         // given a whole fit, creep keeps the rate of that one
-        let is_free =
+        let is_creep =
             matches!(row.family, Family::StaticPreisachCreep | Family::DynamicPreisachCreep);
         let given = Given {
             smoothness: self.rate_smoothness,
             mode: mode.as_ref(),
-            whole: (!is_free).then_some(&whole),
+            whole: (!is_creep).then_some(&whole),
+            creep: whole.log_creep(),
+            creep_from_s: f64::NAN,
         };
         let fitted = by_family::fit(row.family, &training, given)?;
         Ok(bench.rigged(fitted.model, &training))

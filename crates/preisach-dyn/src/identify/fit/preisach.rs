@@ -93,14 +93,16 @@ pub(crate) fn major_loop_mean(slow: &[&Prepared]) -> f64 {
 
 /// What the records that train cover, of all there are.
 pub(crate) fn trained_range(training: &Training, all: &[Prepared]) -> TrainedRange {
-    let trained = || training.slow.iter().chain(&training.fast).map(|r| &r.drive);
-    let amplitudes = extremes(trained().map(|d| d.amplitude_volt));
-    let frequencies = extremes(trained().map(Drive::strongest_hz));
+    let amplitudes = extremes(training.all().iter().map(|r| r.drive.amplitude_volt));
+    let trained = training.slow.iter().chain(&training.fast).map(|r| &r.drive);
+    let frequencies = extremes(trained.map(Drive::strongest_hz));
+    // steps have no frequency
+    let ran = all.iter().filter(|r| r.is_slow || r.drive.is_periodic());
     TrainedRange {
         least_amplitude_volt: amplitudes[0],
         largest_amplitude_volt: amplitudes[1],
         lowest_hz: frequencies[0],
         highest_hz: frequencies[1],
-        bench_highest_hz: extremes(all.iter().map(|r| r.drive.strongest_hz()))[1],
+        bench_highest_hz: extremes(ran.map(|r| r.drive.strongest_hz()))[1],
     }
 }

@@ -56,7 +56,7 @@ impl<'a> Prepared<'a> {
         let (range, most) = match (trains, is_slow) {
             (false, _) => (0..0, 1),
             (true, true) => (record.trained_samples(), MOST_STATIC_SAMPLES),
-            (true, false) => (steady.unwrap_or(0..0), MOST_RATE_SAMPLES),
+            (true, false) => (steady.unwrap_or(record.trained_samples()), MOST_RATE_SAMPLES),
         };
         let stride = range.len().div_ceil(most).max(1);
         let mut prepared = Self {
