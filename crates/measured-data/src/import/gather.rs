@@ -73,6 +73,10 @@ struct Gaps {
     last: Vec<f64>,
     filled: usize,
     left_out: usize,
+    /// Rows that stand twice.
+    doubled: usize,
+    /// Whether the record begins behind a gap.
+    is_before: bool,
     /// The number that the source gave its last row.
     counted: Option<f64>,
     /// Blank lines between the first two rows, where rows stand for equal steps.
@@ -180,6 +184,7 @@ impl Gather {
         let breaks = self.count > 0 && (step < 0.0 || self.count > 1 && step > most * usual);
         if self.reduction.split && breaks {
             self.begin_anew();
+            self.gaps.is_before = step > 0.0;
         }
     }
 
@@ -257,6 +262,12 @@ impl Gather {
             self.gaps.open += 1;
             return;
         }
+        // a clock that told every sample so far repeats none
+        let is_told = self.reduction.sampling_hz.is_none() && self.time.repeated.is_none();
+        if is_told && self.count >= SURELY_EVEN && row == self.gaps.last {
+            self.gaps.doubled += 1;
+            return;
+        }
         let lost = self.rows_lost(row[0]);
         let open = std::mem::take(&mut self.gaps.open) + lost;
         let last = std::mem::take(&mut self.gaps.last);
@@ -265,6 +276,7 @@ impl Gather {
         } else if open > MOST_FILLED && self.reduction.split {
             self.gaps.left_out += open;
             self.begin_anew();
+            self.gaps.is_before = true;
         } else if open > MOST_FILLED {
             let message = format!(
                 "{open} samples before this line have no number or no row, more than the {MOST_FILLED} that are filled; import with --split, which parts the record there"
@@ -503,16 +515,17 @@ impl Gather {
 
     /// What was filled and left out.
     fn told(&self) -> Vec<Problem> {
-        let &Gaps { open, filled, left_out, .. } = &self.gaps;
+        let &Gaps { open, filled, left_out, doubled, .. } = &self.gaps;
         let told = [
             (filled, "samples without a number are filled by straight lines"),
             (left_out + open, "samples without a number at an end are left out"),
+            (doubled, "rows that repeat the one before, time and all, are left out"),
         ];
         let told = told.into_iter().filter(|(count, _)| *count > 0);
-        let warning = |(count, words)| {
-            Problem::new(Place::file(&self.file), Fault::Other(format!("{count} {words}")))
-        };
-        told.map(warning).collect()
+        let behind = "it begins behind a gap: a model knows nothing of the motion before and starts at rest; window_s of the run in dataset.ron leaves its first cycle out";
+        let told = told.map(|(count, words)| format!("{count} {words}"));
+        let told = told.chain(self.gaps.is_before.then(|| behind.to_owned()));
+        told.map(|text| Problem::new(Place::file(&self.file), Fault::Other(text))).collect()
     }
 
     /// The even times behind stamps that a clock rounded, and the step of the clock, s.

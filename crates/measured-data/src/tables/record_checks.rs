@@ -30,6 +30,8 @@ const UNIT_EXCESS: f64 = 20.0;
 /// Lead of the output from which it cannot be an actuator's, deg.
 const LEAST_LEAD_DEG: f64 = 2.0;
 
+/// Distance from the range of all but one in a hundred values, over it, up to which a value is no stray one.
+const STRAY: f64 = 0.5;
 /// Step of the input between two samples that is a jump, as a share of the range.
 const JUMP: f64 = 0.2;
 /// Part of the path of the input that has to lie outside its jumps, for it to tell who leads.
@@ -133,7 +135,7 @@ pub(crate) fn check_unit(
 
 /// Refuses a displacement that leads its command.
 pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
-    let lead_deg = lead_deg(record.input.2, record.output.2);
+    let lead_deg = lead_deg(record.input.2, &without_strays(record.output.2));
     if lead_deg > LEAST_LEAD_DEG {
         let label = record.input.0;
         let message = format!(
@@ -141,6 +143,17 @@ pub(crate) fn check_lag(record: &Record<'_>, problems: &mut Problems) {
         );
         problems.push(record.place(0, label), Fault::Other(message));
     }
+}
+
+/// Values with those far outside the usual range drawn to its neighbourhood: a recorder's word for a lost sample is no motion.
+fn without_strays(values: &[f64]) -> Vec<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let cut = sorted.len() / 100;
+    let (low, high) = (sorted[cut], sorted[sorted.len() - 1 - cut]);
+    let range = high - low;
+    let near = |value: &f64| value.clamp(low - STRAY * range, high + STRAY * range);
+    values.iter().map(near).collect()
 }
 
 /// Lead of the output over the input, deg of the sine with the same loop area per path.
@@ -250,6 +263,19 @@ mod tests {
             .collect();
         let lead = lead_deg(&noisy, &fine(&u));
         assert!((lead - 8.0).abs() < 0.6, "{lead}");
+    }
+
+    /// Numbers that a recorder writes for lost samples do not make the output lead.
+    #[test]
+    fn stray_values_do_not_tell_who_leads() {
+        let (u, mut y) = sine(4.0, 0.0);
+        for (i, stray) in [(480, 9999.0), (481, 9999.0), (482, 9999.0), (1300, -9999.99)] {
+            y[i] = stray;
+        }
+        let mut problems = Problems::default();
+        let (input, output) = (("u", "V", &u[..]), ("y", "um", &y[..]));
+        check_lag(&Record { file: "r.csv", lines: &[], input, output }, &mut problems);
+        assert!(problems.is_empty() && lead_deg(&u, &y) > LEAST_LEAD_DEG, "{}", lead_deg(&u, &y));
     }
 
     fn warned(input: &[f64], output: &[f64]) -> usize {

@@ -23,6 +23,8 @@ const HEAD: usize = 1 << 19;
 /// A time beyond this is the date of a clock, s: the record then begins at 0.
 const CLOCK_S: f64 = 1e7;
 
+/// A day, s.
+const DAY_S: f64 = 86_400.0;
 /// A number beyond this is an instrument's word for overflow.
 const LARGEST: f64 = 1e12;
 /// Most lines of text behind the last sample.
@@ -171,6 +173,9 @@ pub(super) fn read_csv(
     };
     let (mut last_line, mut behind) = (0, 0);
     let mut origin = choice.time.is_none().then_some(0.0);
+    // times of day begin anew at midnight
+    let is_clock = choice.time.as_ref().is_some_and(|own| layout.stamps.contains(&own.source));
+    let (mut midnights, mut clock_s) = (0.0, f64::NEG_INFINITY);
     let most_s = if choice.time.is_some() { f64::INFINITY } else { LARGEST };
     table.numbers(&wanted, read, &mut problems, |numbers, at, problems| {
         let Some(numbers) = numbers else {
@@ -185,6 +190,11 @@ pub(super) fn read_csv(
             gather.counted((*number, step), line, problems);
         }
         let mut row: Vec<f64> = choice.converted(numbers.iter().copied()).collect();
+        if is_clock && row[0] <= DAY_S && row[0] + 0.5 * DAY_S < clock_s {
+            midnights += 1.0;
+        }
+        clock_s = row[0];
+        row[0] += midnights * DAY_S;
         let zero = *origin.get_or_insert(if row[0] > CLOCK_S { row[0] } else { 0.0 });
         row[0] -= zero;
         for (i, value) in row.iter_mut().enumerate() {

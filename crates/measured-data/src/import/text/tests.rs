@@ -331,3 +331,39 @@ proptest! {
         }
     }
 }
+
+/// A clock runs through midnight, and a row that stands twice is one sample: both without a question.
+#[test]
+fn midnight_and_doubled_rows_are_no_faults() {
+    let row = |k: usize| format!("{:.2},{},{}\n", 0.01 * k as f64, k % 7, k % 11);
+    let twice = |k: usize| row(k).repeat(if [50, 90].contains(&k) { 2 } else { 1 });
+    let rows: String = (0..120).map(twice).collect();
+    let table = read(&format!("t [s],u [V],x [um]\n{rows}"), "").unwrap();
+    let part = &table.parts[0];
+    assert_eq!((part.columns[0].len(), part.columns[0][60]), (120, 4.0));
+    let said = part.warnings.iter().map(ToString::to_string).collect::<String>();
+    assert!(said.contains("2 rows that repeat"), "{said}");
+    let clock = |k: usize| {
+        let hundredths = (86_399 * 100 + k) % (86_400 * 100);
+        let [h, m] = [hundredths / 360_000, hundredths / 6000 % 60];
+        format!("{h:02}:{m:02}:{:05.2},{},{}\n", (hundredths % 6000) as f64 / 100.0, k % 7, k % 11)
+    };
+    let rows: String = (0..300).map(clock).collect();
+    let part = &read(&format!("Time,u [V],x [um]\n{rows}"), "").unwrap().parts[0];
+    assert_eq!(part.columns[0].len(), 300);
+    assert!((part.sampling.step_s - 0.01).abs() < 1e-9, "{:?}", part.sampling);
+    // behind a gap a record may begin in mid-motion; where the time begins again it is another one
+    let split = Reduction { split: true, ..REDUCTION };
+    let parted = |second: &dyn Fn(usize) -> usize| {
+        let row = |k: usize| format!("{},{},{}\n", second(k), k % 7, k % 11);
+        let rows: String = (0..120).map(row).collect();
+        let text = format!("t [s],u [V],x [um]\n{rows}");
+        let table = read_with(Cursor::new(text), &options(""), split).unwrap();
+        let warned = |part: &crate::import::gather::Gathered| {
+            part.warnings.iter().any(|w| w.to_string().contains("gap"))
+        };
+        table.parts.iter().map(warned).collect::<Vec<_>>()
+    };
+    assert_eq!(parted(&|k| k + 500 * (k / 60)), [false, true]);
+    assert_eq!(parted(&|k| k % 60), [false, false]);
+}

@@ -21,6 +21,9 @@ use serde::{Deserialize, Serialize};
 /// A simpler family is preferred if its error is at most this much larger.
 const WITHIN: f64 = 1.03;
 
+/// What another time at which creep begins must leave of the error to stand in the place of the usual one.
+const CLEARLY: f64 = 0.95;
+
 /// Levels of the memory and of the rate maps, smoothness of the density.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -331,8 +334,9 @@ impl<'a> Contest<'a> {
         let error = |trial: &Result<Trial, PreisachError>| {
             trial.as_ref().ok().and_then(Trial::error).unwrap_or(f64::INFINITY)
         };
-        // nothing left out: the usual time
-        let best = trials.into_iter().reduce(|a, b| if error(&b) < error(&a) { b } else { a });
+        // the usual time stands where nothing is left out or another one is not clearly better
+        let is_better = |b: &_, a: &_| error(b) < CLEARLY * error(a);
+        let best = trials.into_iter().reduce(|a, b| if is_better(&b, &a) { b } else { a });
         let trial = best.unwrap_or(Err(PreisachError::NotFitted { family: family.name() }));
         let noise = folds::noise(&training, &folds, self.rest_noise_deg);
         let cross_validation = trial.as_ref().ok().and_then(Trial::error);

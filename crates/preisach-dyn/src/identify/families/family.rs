@@ -114,11 +114,11 @@ impl Family {
 
     /// The times that creep is tried to begin, s, the usual one first; of families without it one that means nothing.
     ///
-    /// Records tell the time to a decade at best. Creep that begins early is much like a lag: only what is left out of the fit
-    /// tells them apart.
+    /// Records tell the time to a decade at best. Creep that begins early is much like a lag: what is left out of the fit has
+    /// to ask for it, and beside the rates of a dynamic law nothing tells the two apart.
     pub(crate) fn creep_begins_s(self) -> &'static [f64] {
         match self {
-            Self::StaticPreisachCreep | Self::DynamicPreisachCreep => &[0.1, 0.01],
+            Self::StaticPreisachCreep => &[0.1, 0.01],
             _ => &[0.1],
         }
     }

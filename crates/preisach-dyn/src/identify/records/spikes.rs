@@ -6,6 +6,7 @@
 //!         12 sigma, 6 steps of the sensor, 8 usual bends from sample to sample nearby,
 //!         1 % of the range, and 3 times what bends of the other channel nearby explain
 //! ```
+//! A longer stretch of one and the same value is a loss where it jumps off and back on the same side by as much.
 //! `sigma` is the robust noise of the record, a bend the second difference. A step, a ramp, a tip and the
 //! corner of a cut lie on `a` or on `b`; a pulse of the command bends the command.
 //! Source: the identifier of F. R. Hampel, Journal of the American Statistical Association 69 (1974), with
@@ -16,6 +17,8 @@ use crate::identify::{BenchRecord, Channel, Finding};
 
 /// Samples of a spike at most.
 const LONGEST: usize = 3;
+/// Samples of one value that a recorder wrote in the place of lost ones, at most.
+const LONGEST_HELD: usize = 12;
 /// Samples on either side that it is compared with.
 const BESIDE: usize = 2;
 /// Size over the noise of the record: straight lines over two samples carry some of it.
@@ -114,8 +117,14 @@ fn spikes(values: &[f64], other: &[f64]) -> Vec<Spike> {
         let bend = values[first - 2] - 2.0 * values[first - 1] + values[first];
         let spike = (bend.abs() > least)
             .then(|| {
-                (1..=LONGEST).rev().find_map(|count| {
-                    let size = size(values, first, count).filter(|size| *size > least)?;
+                let held = values[first..].iter().take_while(|v| **v == values[first]).count();
+                let held = (held > LONGEST && held <= LONGEST_HELD).then_some(held);
+                held.into_iter().chain((1..=LONGEST).rev()).find_map(|count| {
+                    let size = match count {
+                        ..=LONGEST => size(values, first, count),
+                        _ => size_of_held(values, first, count),
+                    };
+                    let size = size.filter(|size| *size > least)?;
                     let near =
                         first.saturating_sub(AROUND)..(first + count + AROUND).min(other.len());
                     let other = bends(&other[near]).fold(0.0, f64::max);
@@ -150,6 +159,16 @@ fn size(values: &[f64], first: usize, count: usize) -> Option<f64> {
         below = below.min(on - value).min(back - value);
     }
     let size = above.max(below);
+    let around = first.saturating_sub(AROUND)..(end + AROUND).min(values.len());
+    (size > BENDS * median(bends(&values[around]).collect())).then_some(size)
+}
+
+/// How far a stretch of one value stands out: the lesser of the jumps into it and out of it; none if they are on either side.
+fn size_of_held(values: &[f64], first: usize, count: usize) -> Option<f64> {
+    let end = first + count;
+    let behind = *values.get(end + BESIDE - 1).and(values.get(end))?;
+    let (held, before) = (values[first], values[first - 1]);
+    let size = (held - before).min(held - behind).max((before - held).min(behind - held));
     let around = first.saturating_sub(AROUND)..(end + AROUND).min(values.len());
     (size > BENDS * median(bends(&values[around]).collect())).then_some(size)
 }
@@ -252,6 +271,21 @@ mod tests {
             }
         }
         assert!(f64::from(right) >= 0.97 * f64::from(all), "{right} of {all}");
+        // zeros in the place of lost samples
+        let whole = simulated(commands().swap_remove(0).1, 1e-3, 0.02, &mut rng);
+        let mut spoilt = whole.clone();
+        for y in &mut spoilt.output_deg {
+            *y += 50.0;
+        }
+        spoilt.output_deg[900..906].fill(0.0);
+        let (_, findings) = mended(&spoilt).unwrap();
+        assert!(matches!(&findings[..], [Finding::Spikes { samples: 6, index: 900, .. }]));
+        // clipped it is no loss: the output goes there and back
+        let mut clipped = whole;
+        for y in &mut clipped.output_deg {
+            *y = y.min(2.0);
+        }
+        assert!(mended(&clipped).is_none());
         // a lost sample of the command
         let (step_s, volts) = commands().swap_remove(0);
         let mut record = simulated(volts.clone(), step_s, 0.02, &mut rng);
