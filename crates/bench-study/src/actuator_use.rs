@@ -1,6 +1,6 @@
 //! An actuator at work as text: what its flap did under a voltage, which voltage a wanted motion takes.
 
-use actuator_gap::{ActuatorUse, UseSample};
+use actuator_gap::{ActuatorUse, Deviation, UseSample};
 use report_page::{Column, Sheet, csv_of};
 use rotor_base::significant;
 
@@ -20,9 +20,14 @@ pub fn samples_csv(own: &ActuatorUse) -> String {
     csv_of(own.samples.iter().copied(), &columns)
 }
 
+/// Mean error over rms error from which most of it is an offset.
+const MOSTLY: f64 = 0.7;
+/// Offset over the spread of the motion that is worth a word, percent.
+const WORTH_A_WORD: f64 = 5.0;
+
 /// An error, with an exponent where it is next to nothing.
 fn told(error: f64) -> String {
-    if error < 1e-4 { format!("{error:.1e}") } else { significant(error, 3).to_string() }
+    if error.abs() < 1e-4 { format!("{error:.1e}") } else { significant(error, 3).to_string() }
 }
 
 /// It for people.
@@ -59,6 +64,22 @@ pub fn use_text(own: &ActuatorUse) -> String {
                 told(error.nrmse_percent)
             ),
         );
+    }
+    let is_offset = |error: &&Deviation| {
+        let share = error.mean.abs() / error.rms;
+        share > MOSTLY && share * error.nrmse_percent > WORTH_A_WORD
+    };
+    if let Some(error) = own.error.as_ref().filter(is_offset) {
+        let rest = (error.rms * error.rms - error.mean * error.mean).max(0.0).sqrt();
+        let text = format!(
+            "{} of it is an offset, {} rms is left without it: the record has another zero than the runs identified, as of a sensor that was moved",
+            told(error.mean),
+            told(rest)
+        );
+        sheet.labelled("Offset", &text);
+    }
+    for text in &own.suspicions {
+        sheet.labelled("Suspect", text);
     }
     if let (Some(at_limit), Some(simulations)) = (own.at_limit, own.simulations) {
         let text = if at_limit == 0 {

@@ -2,8 +2,10 @@
 
 use super::history_inverse::{HistoryInverseSettings, history_inverse};
 use crate::StoredActuator;
+use measured_data::Channel;
 use measured_data::import::{EvenRecord, RecordColumn};
 use measured_data::problem::{Fault, Place, Problem};
+use preisach_dyn::identify::{BenchRecord, Finding, Subject, Waveform};
 use preisach_dyn::{Drive, PreisachError};
 use serde::Serialize;
 
@@ -39,6 +41,8 @@ pub struct ActuatorUse {
     pub at_limit: Option<usize>,
     /// Simulations of an inverse; none of a prediction.
     pub simulations: Option<usize>,
+    /// What is suspect about the record, a sentence each; of an inverse nothing is looked at.
+    pub suspicions: Vec<String>,
     /// The samples.
     #[serde(skip)]
     pub samples: Vec<UseSample>,
@@ -70,6 +74,8 @@ pub struct Deviation {
     pub largest: f64,
     /// Rms over the standard deviation of what is beside it, percent.
     pub nrmse_percent: f64,
+    /// Mean of output less what is beside it, in the unit of the output.
+    pub mean: f64,
 }
 
 /// One sample.
@@ -122,7 +128,40 @@ fn deviation_of(output: &[f64], beside: &[f64], is_wanted: bool) -> Deviation {
     let rms = rotor_base::mean_square(&off).sqrt();
     let largest = off.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
     let nrmse_percent = 100.0 * rms / rotor_base::variance(beside).sqrt();
-    Deviation { is_wanted, rms, largest, nrmse_percent }
+    let mean = off.iter().sum::<f64>() / off.len() as f64;
+    Deviation { is_wanted, rms, largest, nrmse_percent, mean }
+}
+
+/// What an import would say of input and output: spikes, an output that falls, leads or is clipped.
+fn suspicions(
+    own: &StoredActuator,
+    record: &EvenRecord,
+    [input, output]: [&[f64]; 2],
+    is_displacement: bool,
+) -> Vec<String> {
+    // an actuator's records are told in V and um, or deg
+    let subject = match &own.channels {
+        Some(channels) => {
+            let unit = |label: &str| Channel::parse(label).map_or("", |own| own.unit.symbol);
+            Subject::Loop { input_unit: unit(&channels.input), output_unit: unit(&channels.output) }
+        }
+        None if is_displacement => Subject::Displacement,
+        None => Subject::Actuator,
+    };
+    let given = BenchRecord {
+        id: record.name.clone(),
+        time_step_s: record.step_s,
+        voltage_volt: input.to_vec(),
+        output_deg: output.to_vec(),
+        ..BenchRecord::default()
+    };
+    let (mended, mut found) = given.without_spikes().unwrap_or((given, Vec::new()));
+    // noise and drift of a rest are no fault of it
+    if mended.drive().waveform != Waveform::Constant {
+        found.extend(mended.suspicions(false));
+    }
+    let told = |own: &Finding| format!("{}; {}", subject.finding(own), subject.remedy(own));
+    found.iter().map(told).collect()
 }
 
 fn samples(
@@ -168,6 +207,10 @@ impl StoredActuator {
             error: beside.map(|beside| deviation_of(&output, beside, false)),
             at_limit: None,
             simulations: None,
+            suspicions: measured.as_ref().map_or_else(Vec::new, |own| {
+                let [input, output] = [&command.values, &own.1.values];
+                suspicions(self, record, [input, output], is_displacement)
+            }),
             samples,
         })
     }
@@ -190,6 +233,7 @@ impl StoredActuator {
             error: Some(found.error),
             at_limit: Some(found.at_limit),
             simulations: Some(found.simulations),
+            suspicions: Vec::new(),
             samples,
         })
     }

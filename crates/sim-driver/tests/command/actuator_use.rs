@@ -210,3 +210,30 @@ fn a_loop_takes_no_command_for_its_input() {
     let told = ["`current_A` is missing", "command_V, displacement_um"];
     place.hhc(&["predict", "a.ron", "--input", "volts.csv"]).rejected(&told);
 }
+
+/// What an import would say of a record stands beside a prediction: another zero, a spike, an output that falls.
+#[test]
+fn a_suspect_record_is_told_beside_its_prediction() {
+    let place = Place::new();
+    write_bench(&place, "bench");
+    place.hhc(&["identify", "bench", "-o", "a.ron"]).done();
+    place.write("u.csv", &motion("command_V", 8.0));
+    place.hhc(&["predict", "a.ron", "--input", "u.csv", "-o", "own.csv"]).done();
+    let own = place.read("own.csv");
+    let predicted = |um: &dyn Fn(usize, f64) -> f64| {
+        let row = |(k, line): (usize, &str)| {
+            let (head, last) = line.rsplit_once(',').unwrap();
+            last.parse().map_or(format!("{line}\n"), |own| format!("{head},{}\n", um(k, own)))
+        };
+        place.write("again.csv", &own.lines().enumerate().map(row).collect::<String>());
+        place.hhc(&["predict", "a.ron", "--input", "again.csv"]).done()
+    };
+    let whole = predicted(&|_, um| um);
+    assert!(!whole.contains("Offset") && !whole.contains("Suspect"), "{whole}");
+    let moved = predicted(&|_, um| um + 30_000.0);
+    assert!(moved.contains("Offset") && moved.contains("another zero"), "{moved}");
+    let spoilt = predicted(&|k, um| if k == 200 { um + 500.0 } else { um });
+    assert!(spoilt.contains("Suspect") && spoilt.contains("spike"), "{spoilt}");
+    let falling = predicted(&|_, um| -um);
+    assert!(falling.contains("Suspect") && falling.contains("falls"), "{falling}");
+}
