@@ -20,10 +20,15 @@ pub fn samples_csv(own: &ActuatorUse) -> String {
     csv_of(own.samples.iter().copied(), &columns)
 }
 
-/// Mean error over rms error from which most of it is an offset.
-const MOSTLY: f64 = 0.7;
 /// Offset over the spread of the motion that is worth a word, percent.
 const WORTH_A_WORD: f64 = 5.0;
+/// What is left without it, percent of that spread, up to which the motions are alike.
+const STILL_ALIKE: f64 = 50.0;
+
+/// Rms error about its mean.
+fn without_mean(error: &Deviation) -> f64 {
+    (error.rms * error.rms - error.mean * error.mean).max(0.0).sqrt()
+}
 
 /// An error, with an exponent where it is next to nothing.
 fn told(error: f64) -> String {
@@ -66,11 +71,12 @@ pub fn use_text(own: &ActuatorUse) -> String {
         );
     }
     let is_offset = |error: &&Deviation| {
-        let share = error.mean.abs() / error.rms;
-        share > MOSTLY && share * error.nrmse_percent > WORTH_A_WORD
+        let [share, rest] = [error.mean.abs() / error.rms, without_mean(error) / error.rms]
+            .map(|part| part * error.nrmse_percent);
+        share > rest && share > WORTH_A_WORD && rest < STILL_ALIKE
     };
     if let Some(error) = own.error.as_ref().filter(is_offset) {
-        let rest = (error.rms * error.rms - error.mean * error.mean).max(0.0).sqrt();
+        let rest = without_mean(error);
         let text = format!(
             "{} of it is an offset, {} rms is left without it: the record has another zero than the runs identified, as of a sensor that was moved",
             told(error.mean),
