@@ -117,7 +117,8 @@ fn spikes(values: &[f64], other: &[f64]) -> Vec<Spike> {
         let bend = values[first - 2] - 2.0 * values[first - 1] + values[first];
         let spike = (bend.abs() > least)
             .then(|| {
-                let held = values[first..].iter().take_while(|v| **v == values[first]).count();
+                let is_held = |v: &&f64| v.total_cmp(&values[first]).is_eq();
+                let held = values[first..].iter().take_while(is_held).count();
                 let held = (held > LONGEST && held <= LONGEST_HELD).then_some(held);
                 held.into_iter().chain((1..=LONGEST).rev()).find_map(|count| {
                     let size = match count {
